@@ -1,0 +1,73 @@
+#pragma once
+
+#include <nuno/problem.h>
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace nuno {
+
+/// How an engine integrates the flight of a lone particle, in n steps of h:
+///     v₁ = r₁·v₀ − q₁·g,   vₙ₊₁ = r·vₙ − q·g,   xₙ₊₁ = xₙ + h·vₙ₊₁.
+/// A launch that is solved for an engine's own recurrence arrives to rounding.
+struct DragRecurrence {
+  double h = 0;             ///< time step [s]
+  double r1 = 0, q1 = 0;    ///< the first step: [1], [s]
+  double r = 0, q = 0;      ///< every other step: [1], [s]
+};
+
+/// One cloth in flight: the state that steps change.
+class Simulation {
+ public:
+  virtual ~Simulation() = default;
+
+  /// Advances by one time step under an external force on every particle [2 × N], N.
+  virtual void step(const Points& forces) = 0;
+
+  virtual const Points& positions() const = 0;  ///< [2 × N], m
+
+  /// Mean velocity over the last step (the launch velocity before the first) [2 × N], m/s.
+  virtual const Points& velocities() const = 0;
+};
+
+/// Error at arrival for one gain, and its derivative where it was asked for.
+struct ErrorSample {
+  double error = 0;  ///< E(α) [m]; +∞ where the rollout diverged
+  double slope = 0;  ///< dE/dα [m²/N]
+};
+
+/// An engine, made ready for one problem: const, and shared by any number of threads.
+class Backend {
+ public:
+  virtual ~Backend() = default;
+
+  virtual std::string_view name() const = 0;
+  const Problem& problem() const { return problem_; }
+  double time_step() const { return problem_.arrival_time / static_cast<double>(steps_); }
+  Index steps() const { return steps_; }  ///< a whole number of them ends at t₀
+
+  /// The largest gain that the time step resolves [N/m].
+  virtual double largest_gain() const = 0;
+  virtual DragRecurrence drag_recurrence() const = 0;
+
+  /// A cloth at its initial positions with these velocities [2 × N], m/s.
+  virtual std::unique_ptr<Simulation> start(const Points& velocities) const = 0;
+
+  /// E(α) at many gains, as `rollout` gives it; by default a rollout each, over all cores.
+  virtual std::vector<double> errors(std::span<const double> gains) const;
+
+  /// Whether `error_samples` is there: an engine that knows dE/dα.
+  virtual bool has_slopes() const { return false; }
+  virtual std::vector<ErrorSample> error_samples(std::span<const double> gains) const;
+
+ protected:
+  Backend(Problem problem, Index steps) : problem_(std::move(problem)), steps_(steps) {}
+
+ private:
+  Problem problem_;
+  Index steps_;
+};
+
+}  // namespace nuno

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nuno/backend.h>
+
+namespace nuno {
+
+/// Velocities that bring each particle from `from` to `to` [2 × N] in `arrival_time` under gravity
+/// and linear drag, κ = k/m [1/s]: equations (1) and (2) of the paper, with z = κ·t₀ and
+/// φ = (1 − e⁻ᶻ)/z,
+///     v_x = Δx/(t₀·φ),   v_y = Δy/(t₀·φ) + g·t₀·(1 − φ)/(z·φ).
+/// The paper prints g₀ for the last term of (2), where its derivation gives g·t₀: integrating
+/// m·v̇ = −m·g − k·v twice,
+///     y(t₀) − y₀ = (m/k)·(v₀ + m·g/k)·(1 − e⁻ᶻ) − (m·g/k)·t₀.
+/// Finite and exact for every κ ≥ 0; κ = 0 is the parabola.
+Points ballistic_launch(const Points& from, const Points& to, double arrival_time, double gravity,
+                        double drag_rate);
+
+/// The same, solved for an engine's own recurrence over `steps` steps.
+Points ballistic_launch(const Points& from, const Points& to, double gravity,
+                        const DragRecurrence& recurrence, Index steps);
+
+/// The velocities nearest to the given ones (least squares; equal masses) that leave the length of
+/// every segment of the chain `positions` unchanged. Keeps the total momentum.
+Points without_stretching(const Points& positions, const Points& velocities);
+
+/// The launch that the backend's problem asks for, arriving on the backend's own recurrence.
+Points launch(const Backend& backend);
+
+}  // namespace nuno

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <nuno/backend.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace nuno {
+
+/// E(α) as an optimiser sees it: no engine, only many gains in and their errors out.
+struct Objective {
+  /// E at each gain [m]; +∞ where a rollout diverged.
+  std::function<std::vector<double>(std::span<const double> gains)> errors;
+  /// E and dE/dα together; empty for an engine that knows no derivative.
+  std::function<std::vector<ErrorSample>(std::span<const double> gains)> samples;
+  /// m/t₀² [N/m]: the gain whose oscillation turns by one radian until arrival.
+  double gain_scale = 1;
+  /// Gains above it are not resolved by the engine's time step [N/m].
+  double largest_gain = std::numeric_limits<double>::infinity();
+};
+
+/// The error at arrival of a backend's problem; the backend must outlive it.
+Objective objective(const Backend& backend);
+
+struct Evaluation {
+  double gain = 0;   ///< α [N/m]
+  double error = 0;  ///< E(α) [m]
+};
+
+enum class OptimizeStatus {
+  converged,
+  budget  ///< the evaluations ran out; the best found is still given
+};
+
+/// What an optimiser found and how.
+struct OptimizeSummary {
+  OptimizeStatus status = OptimizeStatus::converged;
+  double gain = 0;
+  double error = 0;                 ///< +∞ if every rollout diverged
+  Index evaluations = 0;            ///< rollouts, those for derivatives too
+  double seconds = 0;               ///< wall clock
+  std::vector<Evaluation> history;  ///< descent: the path; global: every gain, ascending
+  std::string reason;               ///< why it stopped, for people
+};
+
+struct SteepestDescentOptions {
+  double first_gain = 0;           ///< where it starts [N/m], ≥ 0
+  double first_step = 1;           ///< length of the first move, in gain scales, > 0
+  double difference = 1e-3;        ///< δ of (E(α+δ) − E(α−δ))/2δ, in α + gain scale, > 0
+  double gain_tolerance = 1e-4;    ///< stops when a move is shorter, in α + gain scale, > 0
+  Index largest_evaluations = 400; ///< > 0
+};
+
+/// The paper's optimiser (§ 3.2.3): α ← α − λ·dE/dα with the derivative from repeated rollouts and
+/// a λ that backtracks until the error falls, so it never ascends; α stays ≥ 0. It stops in the
+/// first valley that it meets.
+OptimizeSummary steepest_descent(const Objective& objective,
+                                 const SteepestDescentOptions& options = {});
+
+struct GlobalSearchOptions {
+  double smallest_gain = 1e-2;      ///< of the scan, in gain scales, > 0
+  double largest_gain = 1e3;        ///< of the scan, in gain scales; cut to what the engine resolves
+  Index scan = 96;                  ///< gains of the log-spaced scan, 0 besides, ≥ 3
+  Index brackets = 4;               ///< valleys that are refined, the deepest first, ≥ 1
+  double gain_tolerance = 1e-6;     ///< of a refined gain, relative, > 0
+  Index largest_evaluations = 2000; ///< > 0
+};
+
+/// A log-spaced scan, then a refinement in each of the deepest valleys (Brent).
+OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options = {});
+
+}  // namespace nuno

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <nuno/backend.h>
+#include <nuno/error.h>
+
+#include <optional>
+#include <string>
+
+namespace nuno {
+
+struct RolloutOptions {
+  /// Frames kept per second of flight [1/s], the first at t = 0 and one at t₀; 0 keeps none.
+  double frames_per_second = 0;
+};
+
+enum class RolloutStatus { ok, diverged };
+
+/// One flight under one gain.
+struct Rollout {
+  RolloutStatus status = RolloutStatus::ok;
+  double gain = 0;            ///< α [N/m]
+  Points launch_velocity;     ///< [2 × N], m/s
+  Points final;               ///< positions at arrival [2 × N], m
+  ArrivalError error;         ///< infinite where the rollout diverged
+  double control_effort = 0;  ///< rms control force over particles and time / particle weight
+  std::vector<double> frame_times;      ///< [s]
+  std::vector<Points> frame_positions;  ///< [2 × N] each, m
+  Index diverged_at_step = 0;           ///< the first step with a bad value
+  std::string reason;                   ///< why it diverged, for people
+};
+
+/// Launch, then {shape control, step} until arrival. `gain` α ≥ 0 [N/m]; 0 is launch only.
+Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options = {});
+
+/// The force that control effort is measured in [N]: a particle's weight m·g, or m·L/t₀² without
+/// gravity.
+double effort_unit(const Problem& problem);
+
+}  // namespace nuno
