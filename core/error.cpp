@@ -1,0 +1,18 @@
+#include <nuno/error.h>
+
+#include <cassert>
+
+namespace nuno {
+
+ArrivalError arrival_error(const Points& final, const Points& target) {
+  assert(final.rows() == target.rows() && final.cols() == target.cols());
+  const Vector distance = (final - target).colwise().stableNorm().transpose();
+  return {distance.mean(), distance.maxCoeff(), (centroid(final) - centroid(target)).norm()};
+}
+
+ShapeDifference shape_difference(const Points& a, const Points& b) {
+  const ArrivalError difference = arrival_error(shape_of(a), shape_of(b));
+  return {difference.mean, difference.max};
+}
+
+}  // namespace nuno

@@ -1,0 +1,182 @@
+#include <nuno/optimize.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <chrono>
+#include <cmath>
+// Boost 1.74's header needs it and does not include it.
+#include <cstdint>
+#include <boost/math/tools/minima.hpp>
+
+namespace nuno {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// An objective that counts its rollouts.
+class Counter {
+ public:
+  explicit Counter(const Objective& objective) : objective_(objective) {}
+
+  std::vector<double> errors(std::span<const double> gains) {
+    count_ += static_cast<Index>(gains.size());
+    return objective_.errors(gains);
+  }
+  double error(double gain) { return errors({&gain, 1}).front(); }
+  Index count() const { return count_; }
+
+ private:
+  const Objective& objective_;
+  Index count_ = 0;
+};
+
+/// dE/dα by central differences, one-sided at α = 0 (second order in δ both times).
+double slope(Counter& objective, double gain, double error, double delta) {
+  if (gain >= delta) {
+    const std::array around = {gain - delta, gain + delta};
+    const std::vector<double> errors = objective.errors(around);
+    return (errors[1] - errors[0]) / (2 * delta);
+  }
+  const std::array ahead = {gain + delta, gain + 2 * delta};
+  const std::vector<double> errors = objective.errors(ahead);
+  return (4 * errors[0] - errors[1] - 3 * error) / (2 * delta);
+}
+
+}  // namespace
+
+Objective objective(const Backend& backend) {
+  Objective result;
+  result.errors = [&backend](std::span<const double> gains) { return backend.errors(gains); };
+  if (backend.has_slopes()) {
+    result.samples = [&backend](std::span<const double> gains) {
+      return backend.error_samples(gains);
+    };
+  }
+  const Problem& problem = backend.problem();
+  result.gain_scale =
+      problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  result.largest_gain = backend.largest_gain();
+  return result;
+}
+
+OptimizeSummary steepest_descent(const Objective& objective,
+                                 const SteepestDescentOptions& options) {
+  const auto start = Clock::now();
+  Counter counter(objective);
+  OptimizeSummary summary;
+  summary.status = OptimizeStatus::budget;
+  summary.reason = fmt::format("the budget of {} rollouts ran out", options.largest_evaluations);
+  summary.gain = options.first_gain;
+  summary.error = counter.error(summary.gain);
+  summary.history.push_back({summary.gain, summary.error});
+
+  double lambda = 0;  // of α ← α − λ·dE/dα
+  const auto converged = [&](std::string reason) {
+    summary.status = OptimizeStatus::converged;
+    summary.reason = std::move(reason);
+  };
+  while (counter.count() < options.largest_evaluations) {
+    const double unit = summary.gain + objective.gain_scale;
+    const double derivative = slope(counter, summary.gain, summary.error, options.difference * unit);
+    if (!std::isfinite(derivative)) {
+      converged("the rollouts beside this gain diverge");
+      break;
+    }
+    if (derivative == 0 || (summary.gain == 0 && derivative > 0)) {
+      converged(derivative == 0 ? "the error is level" : "the error rises from gain 0");
+      break;
+    }
+    if (lambda == 0) lambda = options.first_step * objective.gain_scale / std::abs(derivative);
+
+    bool moved = false;
+    double move = 0;
+    while (counter.count() < options.largest_evaluations) {
+      const double gain =
+          std::clamp(summary.gain - lambda * derivative, 0.0, objective.largest_gain);
+      move = std::abs(gain - summary.gain);
+      if (move <= options.gain_tolerance * unit) break;
+      const double error = counter.error(gain);
+      // Armijo: a step that falls by a tenth of what the slope promises is taken.
+      if (error < summary.error - 0.1 * std::abs(derivative) * move) {
+        summary.gain = gain;
+        summary.error = error;
+        summary.history.push_back({gain, error});
+        moved = true;
+        break;
+      }
+      lambda *= 0.5;
+    }
+    if (moved) {
+      lambda *= 2;
+    } else if (move <= options.gain_tolerance * unit) {
+      converged("the next move is shorter than the tolerance");
+      break;
+    }
+  }
+  summary.evaluations = counter.count();
+  summary.seconds = seconds_since(start);
+  return summary;
+}
+
+OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options) {
+  const auto start = Clock::now();
+  Counter counter(objective);
+  OptimizeSummary summary;
+
+  const double first = options.smallest_gain * objective.gain_scale;
+  const double last = std::max(
+      2 * first, std::min(options.largest_gain * objective.gain_scale, objective.largest_gain));
+  std::vector<double> gains = {0};
+  for (Index i = 0; i < options.scan; ++i) {
+    gains.push_back(first * std::pow(last / first, static_cast<double>(i) /
+                                                       static_cast<double>(options.scan - 1)));
+  }
+  const std::vector<double> errors = counter.errors(gains);
+  for (std::size_t i = 0; i < gains.size(); ++i) summary.history.push_back({gains[i], errors[i]});
+
+  std::vector<std::size_t> valleys;
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    const bool below_left = i == 0 || errors[i] <= errors[i - 1];
+    const bool below_right = i + 1 == gains.size() || errors[i] <= errors[i + 1];
+    if (below_left && below_right && std::isfinite(errors[i])) valleys.push_back(i);
+  }
+  std::ranges::sort(valleys, {}, [&](std::size_t i) { return errors[i]; });
+  if (valleys.size() > static_cast<std::size_t>(options.brackets)) {
+    valleys.resize(static_cast<std::size_t>(options.brackets));
+  }
+
+  const int bits = static_cast<int>(std::ceil(-std::log2(options.gain_tolerance)));
+  for (const std::size_t valley : valleys) {
+    if (counter.count() >= options.largest_evaluations) break;
+    const double left = gains[valley == 0 ? 0 : valley - 1];
+    const double right = gains[std::min(valley + 1, gains.size() - 1)];
+    auto iterations = static_cast<std::uintmax_t>(options.largest_evaluations - counter.count());
+    boost::math::tools::brent_find_minima(
+        [&](double gain) {
+          const double error = counter.error(gain);
+          summary.history.push_back({gain, error});
+          return error;
+        },
+        left, right, bits, iterations);
+  }
+  summary.status = counter.count() < options.largest_evaluations ? OptimizeStatus::converged
+                                                                 : OptimizeStatus::budget;
+  summary.reason = fmt::format("scanned {} gains, refined the {} deepest valleys", gains.size(),
+                               valleys.size());
+  std::ranges::sort(summary.history, {}, &Evaluation::gain);
+  const Evaluation& best = *std::ranges::min_element(summary.history, {}, &Evaluation::error);
+  summary.gain = best.gain;
+  summary.error = best.error;
+  summary.evaluations = counter.count();
+  summary.seconds = seconds_since(start);
+  return summary;
+}
+
+}  // namespace nuno

@@ -1,0 +1,44 @@
+#include <nuno/points.h>
+
+#include <cassert>
+
+namespace nuno {
+
+// Summed from the last column to the first, the order in which the native kernel updates the
+// particles, so that both see the same centroid to the last bit.
+Vector centroid(const Points& points) {
+  assert(points.cols() > 0);
+  Vector sum = Vector::Zero(points.rows());
+  for (Index i = points.cols(); i-- > 0;) sum += points.col(i);
+  return sum / static_cast<double>(points.cols());
+}
+
+Points shape_of(const Points& points) { return points.colwise() - centroid(points); }
+
+Vector segment_lengths(const Points& points) {
+  const Index segments = points.cols() - 1;
+  return (points.rightCols(segments) - points.leftCols(segments)).colwise().stableNorm().transpose();
+}
+
+Points resample(const Points& polyline, Index count) {
+  assert(polyline.cols() >= 2 && count >= 2);
+  const Vector lengths = segment_lengths(polyline);
+  const double total = lengths.sum();
+  Points points(polyline.rows(), count);
+  Index segment = 0;
+  double start = 0;  // arc length at the start of `segment`
+  for (Index i = 0; i < count; ++i) {
+    const double wanted = total * (static_cast<double>(i) / static_cast<double>(count - 1));
+    while (segment + 1 < lengths.size() && start + lengths[segment] < wanted) {
+      start += lengths[segment++];
+    }
+    const double along =
+        lengths[segment] > 0 ? std::min(1.0, (wanted - start) / lengths[segment]) : 0.0;
+    points.col(i) = polyline.col(segment) + along * (polyline.col(segment + 1) - polyline.col(segment));
+  }
+  points.col(0) = polyline.col(0);
+  points.col(count - 1) = polyline.col(polyline.cols() - 1);
+  return points;
+}
+
+}  // namespace nuno

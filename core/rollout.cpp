@@ -1,0 +1,102 @@
+#include <nuno/rollout.h>
+
+#include <nuno/launch.h>
+#include <nuno/shape_control.h>
+
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace nuno {
+namespace {
+
+/// Keeps the frames of a flight, interpolated between the two steps around each frame's time.
+class Recorder {
+ public:
+  Recorder(double frames_per_second, double arrival_time, Rollout& rollout)
+      : rate_(frames_per_second), arrival_time_(arrival_time), rollout_(rollout) {}
+
+  void record(double time_before, const Points& before, double time, const Points& after,
+              bool arrived) {
+    if (rate_ <= 0) return;
+    for (; due() < arrival_time_ * (1 - 1e-9) && due() <= time; ++frame_) {
+      const double along = (due() - time_before) / (time - time_before);
+      keep(due(), before + along * (after - before));
+    }
+    if (arrived) keep(arrival_time_, after);
+  }
+
+  void keep(double time, const Points& positions) {
+    rollout_.frame_times.push_back(time);
+    rollout_.frame_positions.push_back(positions);
+  }
+
+  bool due_by(double time) const { return rate_ > 0 && due() <= time; }
+
+ private:
+  double due() const { return static_cast<double>(frame_) / rate_; }
+
+  double rate_;
+  double arrival_time_;
+  Index frame_ = 1;  // frame 0 is the initial shape
+  Rollout& rollout_;
+};
+
+}  // namespace
+
+double effort_unit(const Problem& problem) {
+  const Chain& chain = problem.chain;
+  return chain.particle_mass * (chain.gravity > 0 ? chain.gravity
+                                                  : chain.length / (problem.arrival_time * problem.arrival_time));
+}
+
+Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options) {
+  assert(gain >= 0);
+  const Problem& problem = backend.problem();
+  const Points target_shape = shape_of(problem.target);
+  const double h = backend.time_step();
+
+  Rollout result;
+  result.gain = gain;
+  result.launch_velocity = launch(backend);
+  const std::unique_ptr<Simulation> cloth = backend.start(result.launch_velocity);
+  Recorder recorder(options.frames_per_second, problem.arrival_time, result);
+  if (options.frames_per_second > 0) recorder.keep(0, cloth->positions());
+
+  Points forces = Points::Zero(2, problem.chain.particles());
+  Points before;
+  double squared_force = 0;
+  for (Index n = 0; n < backend.steps(); ++n) {
+    if (gain > 0) {
+      shape_control(target_shape, cloth->positions(), gain, forces);
+      squared_force += forces.squaredNorm();
+    }
+    const bool arriving = n + 1 == backend.steps();
+    const double time = static_cast<double>(n + 1) * h;
+    const bool frame_due = arriving || recorder.due_by(time);
+    if (frame_due) before = cloth->positions();
+    cloth->step(forces);
+    if (!cloth->positions().allFinite()) {
+      result.status = RolloutStatus::diverged;
+      result.diverged_at_step = n + 1;
+      result.reason = "a particle's position is no longer finite";
+      break;
+    }
+    if (frame_due) recorder.record(time - h, before, time, cloth->positions(), arriving);
+  }
+
+  result.final = cloth->positions();
+  if (result.status == RolloutStatus::ok) {
+    result.error = arrival_error(result.final, problem.target);
+    const double samples =
+        static_cast<double>(backend.steps()) * static_cast<double>(problem.chain.particles());
+    result.control_effort = std::sqrt(squared_force / samples) / effort_unit(problem);
+  } else {
+    const double infinity = std::numeric_limits<double>::infinity();
+    result.error = {infinity, infinity, infinity};
+    result.control_effort = infinity;
+  }
+  return result;
+}
+
+}  // namespace nuno

@@ -1,0 +1,85 @@
+#include <nuno/scene.h>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace nuno {
+namespace {
+
+constexpr Index smallest_particles = 3;
+constexpr Index largest_particles = 1'000'000;
+// Far outside what a cloth can be, and far inside what doubles can square and multiply.
+constexpr double largest_number = 1e12;
+constexpr double smallest_positive = 1e-12;
+
+[[noreturn]] void refuse(const std::string& source, std::string_view field, const std::string& what) {
+  throw InputError(fmt::format("{}: {}: {}", source, field, what));
+}
+
+void require_positive(const std::string& source, std::string_view field, double value) {
+  if (!(value > 0)) refuse(source, field, fmt::format("{} is not > 0", value));
+  if (!(value >= smallest_positive && value <= largest_number)) {
+    refuse(source, field, fmt::format("{} is not within {} … {}", value, smallest_positive, largest_number));
+  }
+}
+
+void require_not_negative(const std::string& source, std::string_view field, double value) {
+  if (!(value >= 0)) refuse(source, field, fmt::format("{} is not >= 0", value));
+  if (!(value <= largest_number)) {
+    refuse(source, field, fmt::format("{} is not <= {}", value, largest_number));
+  }
+}
+
+void require_polyline(const std::string& source, std::string_view field, const Points& line) {
+  if (line.cols() < 2) {
+    refuse(source, field, fmt::format("{} point(s) are not at least 2 distinct points", line.cols()));
+  }
+  for (Index i = 0; i < line.cols(); ++i) {
+    for (Index row = 0; row < line.rows(); ++row) {
+      const double value = line(row, i);
+      if (!(std::abs(value) <= largest_number)) {
+        refuse(source, fmt::format("{}/{}/{}", field, i, row),
+               fmt::format("{} is not within ±{}", value, largest_number));
+      }
+    }
+  }
+  const double length = segment_lengths(line).sum();
+  // Below that, coordinates cannot tell the cloth's points apart.
+  if (!(length > 0)) refuse(source, field, "all points are the same, not at least 2 distinct points");
+  if (!(length >= 1e-9 * line.cwiseAbs().maxCoeff() && length >= smallest_positive)) {
+    refuse(source, field,
+           fmt::format("length {} is not >= {} and 1e-9 of its distance from the origin", length,
+                       smallest_positive));
+  }
+}
+
+}  // namespace
+
+void validate(const Scene& scene, const std::string& source) {
+  if (scene.particles < smallest_particles || scene.particles > largest_particles) {
+    refuse(source, "/particles",
+           fmt::format("{} is not within {} … {}", scene.particles, smallest_particles, largest_particles));
+  }
+  require_positive(source, "/arrival_time", scene.arrival_time);
+  require_not_negative(source, "/gravity", scene.gravity);
+  require_polyline(source, "/initial", scene.initial);
+  require_polyline(source, "/target", scene.target);
+  require_positive(source, "/cloth/mass", scene.cloth.mass);
+  require_not_negative(source, "/cloth/air_drag", scene.cloth.air_drag);
+  require_positive(source, "/cloth/stretch_stiffness", scene.cloth.stretch_stiffness);
+  require_not_negative(source, "/cloth/stretch_damping", scene.cloth.stretch_damping);
+  require_not_negative(source, "/cloth/hinge_stiffness", scene.cloth.hinge_stiffness);
+  require_not_negative(source, "/cloth/hinge_damping", scene.cloth.hinge_damping);
+  if (scene.time_step) require_positive(source, "/time_step", *scene.time_step);
+  require_positive(source, "/frames_per_second", scene.frames_per_second);
+  // e^z must stay a number with digits to spare.
+  const double drag_turns = scene.cloth.air_drag / scene.cloth.mass * scene.arrival_time;
+  if (!(drag_turns <= 700)) {
+    refuse(source, "/cloth/air_drag",
+           fmt::format("{} stops the cloth: air_drag/mass·arrival_time = {} is not <= 700",
+                       scene.cloth.air_drag, drag_turns));
+  }
+}
+
+}  // namespace nuno
