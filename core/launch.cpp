@@ -31,8 +31,8 @@ Points ballistic_launch(const Points& from, const Points& to, double arrival_tim
   return velocities;
 }
 
-// The recurrence is affine in v₀ and g: x_n = x₀ + a·v₀ − b·g. Running it once for v₀ = 1, g = 0 and
-// once for v₀ = 0, g = −1 gives a and b with the engine's own rounding, at any drag.
+// The recurrence is affine in v₀ and g: x_n = x₀ + a·v₀ − b·g. Running it once for v₀ = 1, g = 0
+// and once for v₀ = 0, g = −1 gives a and b with the engine's own rounding, at any drag.
 Points ballistic_launch(const Points& from, const Points& to, double gravity,
                         const DragRecurrence& recurrence, Index steps) {
   double speed = 1, a = 0;

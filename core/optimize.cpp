@@ -8,8 +8,8 @@
 #include <chrono>
 #include <cmath>
 // Boost 1.74's header needs it and does not include it.
-#include <cstdint>
 #include <boost/math/tools/minima.hpp>
+#include <cstdint>
 
 namespace nuno {
 namespace {
@@ -60,8 +60,7 @@ Objective objective(const Backend& backend) {
     };
   }
   const Problem& problem = backend.problem();
-  result.gain_scale =
-      problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  result.gain_scale = problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
   result.largest_gain = backend.largest_gain();
   return result;
 }
@@ -84,7 +83,8 @@ OptimizeSummary steepest_descent(const Objective& objective,
   };
   while (counter.count() < options.largest_evaluations) {
     const double unit = summary.gain + objective.gain_scale;
-    const double derivative = slope(counter, summary.gain, summary.error, options.difference * unit);
+    const double derivative =
+        slope(counter, summary.gain, summary.error, options.difference * unit);
     if (!std::isfinite(derivative)) {
       converged("the rollouts beside this gain diverge");
       break;
@@ -168,8 +168,8 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
   }
   summary.status = counter.count() < options.largest_evaluations ? OptimizeStatus::converged
                                                                  : OptimizeStatus::budget;
-  summary.reason = fmt::format("scanned {} gains, refined the {} deepest valleys", gains.size(),
-                               valleys.size());
+  summary.reason =
+      fmt::format("scanned {} gains, refined the {} deepest valleys", gains.size(), valleys.size());
   std::ranges::sort(summary.history, {}, &Evaluation::gain);
   const Evaluation& best = *std::ranges::min_element(summary.history, {}, &Evaluation::error);
   summary.gain = best.gain;

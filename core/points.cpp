@@ -17,7 +17,10 @@ Points shape_of(const Points& points) { return points.colwise() - centroid(point
 
 Vector segment_lengths(const Points& points) {
   const Index segments = points.cols() - 1;
-  return (points.rightCols(segments) - points.leftCols(segments)).colwise().stableNorm().transpose();
+  return (points.rightCols(segments) - points.leftCols(segments))
+      .colwise()
+      .stableNorm()
+      .transpose();
 }
 
 Points resample(const Points& polyline, Index count) {
@@ -34,7 +37,8 @@ Points resample(const Points& polyline, Index count) {
     }
     const double along =
         lengths[segment] > 0 ? std::min(1.0, (wanted - start) / lengths[segment]) : 0.0;
-    points.col(i) = polyline.col(segment) + along * (polyline.col(segment + 1) - polyline.col(segment));
+    points.col(i) =
+        polyline.col(segment) + along * (polyline.col(segment + 1) - polyline.col(segment));
   }
   points.col(0) = polyline.col(0);
   points.col(count - 1) = polyline.col(polyline.cols() - 1);

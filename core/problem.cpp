@@ -16,8 +16,8 @@ Problem make_problem(const Scene& scene) {
   const auto particles = static_cast<double>(scene.particles);
   chain.initial = resample(scene.initial, scene.particles);
   chain.rest_length = segment_lengths(chain.initial);
-  chain.hinge_length =
-      0.5 * (chain.rest_length.head(scene.particles - 2) + chain.rest_length.tail(scene.particles - 2));
+  chain.hinge_length = 0.5 * (chain.rest_length.head(scene.particles - 2) +
+                              chain.rest_length.tail(scene.particles - 2));
   chain.length = chain.rest_length.sum();
   chain.particle_mass = scene.cloth.mass / particles;
   chain.particle_drag = scene.cloth.air_drag / particles;
@@ -25,18 +25,21 @@ Problem make_problem(const Scene& scene) {
   chain.cloth = scene.cloth;
   // A drawing that runs back over itself can put two neighbours on one spot: no segment is there.
   if (!(chain.rest_length.minCoeff() > 1e-9 * chain.length)) {
-    throw InputError(source + ": /initial: the line resampled to /particles points has a segment of no length");
+    throw InputError(
+        source + ": /initial: the line resampled to /particles points has a segment of no length");
   }
 
   problem.target = resample(scene.target, scene.particles);
   if (scene.target_length == TargetLength::fit) {
     const double drawn = segment_lengths(problem.target).sum();
     if (!(drawn > 1e-9 * chain.length)) {
-      throw InputError(source + ": /target: the line resampled to /particles points has no length to fit");
+      throw InputError(source +
+                       ": /target: the line resampled to /particles points has no length to fit");
     }
     problem.target_scale = chain.length / drawn;
     const Vector center = centroid(problem.target);
-    problem.target = (problem.target_scale * (problem.target.colwise() - center)).colwise() + center;
+    problem.target =
+        (problem.target_scale * (problem.target.colwise() - center)).colwise() + center;
   }
   return problem;
 }

@@ -46,8 +46,9 @@ class Recorder {
 
 double effort_unit(const Problem& problem) {
   const Chain& chain = problem.chain;
-  return chain.particle_mass * (chain.gravity > 0 ? chain.gravity
-                                                  : chain.length / (problem.arrival_time * problem.arrival_time));
+  return chain.particle_mass * (chain.gravity > 0
+                                    ? chain.gravity
+                                    : chain.length / (problem.arrival_time * problem.arrival_time));
 }
 
 Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options) {

@@ -13,14 +13,16 @@ constexpr Index largest_particles = 1'000'000;
 constexpr double largest_number = 1e12;
 constexpr double smallest_positive = 1e-12;
 
-[[noreturn]] void refuse(const std::string& source, std::string_view field, const std::string& what) {
+[[noreturn]] void refuse(const std::string& source, std::string_view field,
+                         const std::string& what) {
   throw InputError(fmt::format("{}: {}: {}", source, field, what));
 }
 
 void require_positive(const std::string& source, std::string_view field, double value) {
   if (!(value > 0)) refuse(source, field, fmt::format("{} is not > 0", value));
   if (!(value >= smallest_positive && value <= largest_number)) {
-    refuse(source, field, fmt::format("{} is not within {} … {}", value, smallest_positive, largest_number));
+    refuse(source, field,
+           fmt::format("{} is not within {} … {}", value, smallest_positive, largest_number));
   }
 }
 
@@ -33,7 +35,8 @@ void require_not_negative(const std::string& source, std::string_view field, dou
 
 void require_polyline(const std::string& source, std::string_view field, const Points& line) {
   if (line.cols() < 2) {
-    refuse(source, field, fmt::format("{} point(s) are not at least 2 distinct points", line.cols()));
+    refuse(source, field,
+           fmt::format("{} point(s) are not at least 2 distinct points", line.cols()));
   }
   for (Index i = 0; i < line.cols(); ++i) {
     for (Index row = 0; row < line.rows(); ++row) {
@@ -46,7 +49,8 @@ void require_polyline(const std::string& source, std::string_view field, const P
   }
   const double length = segment_lengths(line).sum();
   // Below that, coordinates cannot tell the cloth's points apart.
-  if (!(length > 0)) refuse(source, field, "all points are the same, not at least 2 distinct points");
+  if (!(length > 0))
+    refuse(source, field, "all points are the same, not at least 2 distinct points");
   if (!(length >= 1e-9 * line.cwiseAbs().maxCoeff() && length >= smallest_positive)) {
     refuse(source, field,
            fmt::format("length {} is not >= {} and 1e-9 of its distance from the origin", length,
@@ -59,7 +63,8 @@ void require_polyline(const std::string& source, std::string_view field, const P
 void validate(const Scene& scene, const std::string& source) {
   if (scene.particles < smallest_particles || scene.particles > largest_particles) {
     refuse(source, "/particles",
-           fmt::format("{} is not within {} … {}", scene.particles, smallest_particles, largest_particles));
+           fmt::format("{} is not within {} … {}", scene.particles, smallest_particles,
+                       largest_particles));
   }
   require_positive(source, "/arrival_time", scene.arrival_time);
   require_not_negative(source, "/gravity", scene.gravity);

@@ -124,7 +124,8 @@ constexpr std::array target_length_words = {Word<TargetLength>{"fit", TargetLeng
                                             Word<TargetLength>{"as-drawn", TargetLength::as_drawn}};
 
 template <typename Words, typename Enum>
-void read(const Json& object, const Field& parent, const char* name, const Words& words, Enum& into) {
+void read(const Json& object, const Field& parent, const char* name, const Words& words,
+          Enum& into) {
   if (!object.contains(name)) return;
   for (const auto& word : words) {
     if (object[name] == word.text) {
@@ -132,8 +133,8 @@ void read(const Json& object, const Field& parent, const char* name, const Words
       return;
     }
   }
-  parent.child(name).refuse(fmt::format("{} is not \"{}\" or \"{}\"", shown(object[name]),
-                                        words[0].text, words[1].text));
+  parent.child(name).refuse(
+      fmt::format("{} is not \"{}\" or \"{}\"", shown(object[name]), words[0].text, words[1].text));
 }
 
 template <typename Words, typename Enum>
@@ -160,7 +161,8 @@ Json parse_json(const std::string& text, const std::string& source) {
   } catch (const Json::exception& error) {
     std::string what = error.what();  // "[json.exception.…] message", possibly over several lines
     if (const auto end = what.find("] "); end != std::string::npos) what = what.substr(end + 2);
-    std::ranges::replace_if(what, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
+    std::ranges::replace_if(
+        what, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
     throw InputError(fmt::format("{}: /: not JSON: {}", source, what));
   }
 }
@@ -177,10 +179,11 @@ Scene parse_scene(const std::string& text, const std::string& source) {
   const Json json = parse_json(text, source);
   const Field root{source, ""};
   static constexpr std::array<std::string_view, 12> known = {
-      "nuno_scene", "name",   "particles",     "arrival_time", "gravity",          "initial",
-      "target",     "cloth",  "launch",        "target_length", "time_step",       "frames_per_second"};
+      "nuno_scene", "name",  "particles", "arrival_time",  "gravity",   "initial",
+      "target",     "cloth", "launch",    "target_length", "time_step", "frames_per_second"};
   static constexpr std::array<std::string_view, 6> known_cloth = {
-      "mass", "air_drag", "stretch_stiffness", "stretch_damping", "hinge_stiffness", "hinge_damping"};
+      "mass",         "air_drag", "stretch_stiffness", "stretch_damping", "hinge_stiffness",
+      "hinge_damping"};
   require_known_fields(json, root, known);
   if (!json.contains("nuno_scene")) root.child("nuno_scene").refuse("is missing; it is required");
   if (json["nuno_scene"] != 1) {

@@ -13,9 +13,9 @@ namespace nuno {
 ///     v₁ = r₁·v₀ − q₁·g,   vₙ₊₁ = r·vₙ − q·g,   xₙ₊₁ = xₙ + h·vₙ₊₁.
 /// A launch that is solved for an engine's own recurrence arrives to rounding.
 struct DragRecurrence {
-  double h = 0;             ///< time step [s]
-  double r1 = 0, q1 = 0;    ///< the first step: [1], [s]
-  double r = 0, q = 0;      ///< every other step: [1], [s]
+  double h = 0;           ///< time step [s]
+  double r1 = 0, q1 = 0;  ///< the first step: [1], [s]
+  double r = 0, q = 0;    ///< every other step: [1], [s]
 };
 
 /// One cloth in flight: the state that steps change.

@@ -46,11 +46,11 @@ struct OptimizeSummary {
 };
 
 struct SteepestDescentOptions {
-  double first_gain = 0;           ///< where it starts [N/m], ≥ 0
-  double first_step = 1;           ///< length of the first move, in gain scales, > 0
-  double difference = 1e-3;        ///< δ of (E(α+δ) − E(α−δ))/2δ, in α + gain scale, > 0
-  double gain_tolerance = 1e-4;    ///< stops when a move is shorter, in α + gain scale, > 0
-  Index largest_evaluations = 400; ///< > 0
+  double first_gain = 0;         ///< where it starts [N/m], ≥ 0
+  double first_step = 1;         ///< length of the first move, in gain scales, > 0
+  double difference = 1e-3;      ///< δ of (E(α+δ) − E(α−δ))/2δ, in α + gain scale, > 0
+  double gain_tolerance = 1e-4;  ///< stops when a move is shorter, in α + gain scale, > 0
+  Index largest_evaluations = 400;  ///< > 0
 };
 
 /// The paper's optimiser (§ 3.2.3): α ← α − λ·dE/dα with the derivative from repeated rollouts and
@@ -60,12 +60,12 @@ OptimizeSummary steepest_descent(const Objective& objective,
                                  const SteepestDescentOptions& options = {});
 
 struct GlobalSearchOptions {
-  double smallest_gain = 1e-2;      ///< of the scan, in gain scales, > 0
-  double largest_gain = 1e3;        ///< of the scan, in gain scales; cut to what the engine resolves
-  Index scan = 96;                  ///< gains of the log-spaced scan, 0 besides, ≥ 3
-  Index brackets = 4;               ///< valleys that are refined, the deepest first, ≥ 1
-  double gain_tolerance = 1e-6;     ///< of a refined gain, relative, > 0
-  Index largest_evaluations = 2000; ///< > 0
+  double smallest_gain = 1e-2;   ///< of the scan, in gain scales, > 0
+  double largest_gain = 1e3;     ///< of the scan, in gain scales; cut to what the engine resolves
+  Index scan = 96;               ///< gains of the log-spaced scan, 0 besides, ≥ 3
+  Index brackets = 4;            ///< valleys that are refined, the deepest first, ≥ 1
+  double gain_tolerance = 1e-6;  ///< of a refined gain, relative, > 0
+  Index largest_evaluations = 2000;  ///< > 0
 };
 
 /// A log-spaced scan, then a refinement in each of the deepest valleys (Brent).

@@ -18,12 +18,12 @@ enum class RolloutStatus { ok, diverged };
 /// One flight under one gain.
 struct Rollout {
   RolloutStatus status = RolloutStatus::ok;
-  double gain = 0;            ///< α [N/m]
-  Points launch_velocity;     ///< [2 × N], m/s
-  Points final;               ///< positions at arrival [2 × N], m
-  ArrivalError error;         ///< infinite where the rollout diverged
-  double control_effort = 0;  ///< rms control force over particles and time / particle weight
-  std::vector<double> frame_times;      ///< [s]
+  double gain = 0;                  ///< α [N/m]
+  Points launch_velocity;           ///< [2 × N], m/s
+  Points final;                     ///< positions at arrival [2 × N], m
+  ArrivalError error;               ///< infinite where the rollout diverged
+  double control_effort = 0;        ///< rms control force over particles and time / particle weight
+  std::vector<double> frame_times;  ///< [s]
   std::vector<Points> frame_positions;  ///< [2 × N] each, m
   Index diverged_at_step = 0;           ///< the first step with a bad value
   std::string reason;                   ///< why it diverged, for people

@@ -21,7 +21,7 @@ struct Cloth {
   double stretch_stiffness = 200;  ///< EA [N], > 0; segment i has the spring EA/ℓᵢ
   double stretch_damping = 6e-4;   ///< ηA [N·s], ≥ 0; segment i has the dashpot ηA/ℓᵢ
   double hinge_stiffness = 1e-3;   ///< EI [N·m²], ≥ 0; hinge i has the moment EI·θ/ℓ̄ᵢ
-  double hinge_damping = 0;        ///< ηI [N·m²·s], ≥ 0; hinge i has the moment ηI·θ̇/ℓ̄ᵢ
+  double hinge_damping = 0;  ///< ηI [N·m²·s], ≥ 0; hinge i has the moment ηI·θ̇/ℓ̄ᵢ
 };
 
 /// How the particles start.
@@ -39,16 +39,16 @@ enum class TargetLength {
 /// What an animator asks for. Lengths in metres, y up, SI throughout.
 struct Scene {
   std::string name;
-  Index particles = 32;              ///< N, 3 … 1 000 000
-  double arrival_time = 0;           ///< t₀ [s], > 0; has no default
-  double gravity = 9.80665;          ///< downward [m/s²], ≥ 0
-  Points initial;                    ///< drawn polyline [2 × any], at least 2 distinct points
-  Points target;                     ///< drawn polyline [2 × any], at least 2 distinct points
+  Index particles = 32;      ///< N, 3 … 1 000 000
+  double arrival_time = 0;   ///< t₀ [s], > 0; has no default
+  double gravity = 9.80665;  ///< downward [m/s²], ≥ 0
+  Points initial;            ///< drawn polyline [2 × any], at least 2 distinct points
+  Points target;             ///< drawn polyline [2 × any], at least 2 distinct points
   Cloth cloth;
   Launch launch = Launch::ballistic;
   TargetLength target_length = TargetLength::fit;
-  std::optional<double> time_step;   ///< [s], > 0; absent: the engine chooses
-  double frames_per_second = 60;     ///< frames kept of a rollout [1/s], > 0
+  std::optional<double> time_step;  ///< [s], > 0; absent: the engine chooses
+  double frames_per_second = 60;    ///< frames kept of a rollout [1/s], > 0
 };
 
 /// Throws InputError if a value breaks its rule; `source` names the file in the message.

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <nuno/points.h>
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace nuno::native {
+
+/// The constants of one chain in the scheme of chain_kernel-inl.h, the same for every gain.
+struct ChainPlan {
+  Index particles = 0;
+  Index steps = 0;
+  double h = 0;                       ///< time step [s]
+  std::vector<double> rest_length;    ///< ℓ [N − 1]
+  std::vector<double> hinge_spring;   ///< EI/ℓ̄ of the hinge at each particle, 0 at the ends [N]
+  std::vector<double> hinge_dashpot;  ///< ηI/ℓ̄ [N]; empty where the hinges have no damping
+  std::vector<double> target_shape;   ///< target about its centroid [2N]
+
+  /// One kick of the velocities: v' = keep·v − (0, fall) + force·(forces).
+  struct Kick {
+    double keep = 0;               ///< r [1]
+    double fall = 0;               ///< q·g [m/s]
+    double force = 0;              ///< p = q/m [s/kg]
+    double strain = 0;             ///< EA/c⁺, see chain_kernel-inl.h
+    double rate = 0;               ///< c⁻/c⁺
+    std::vector<double> diagonal;  ///< 2 + ℓ/(c⁺·p) [N − 1]
+  };
+  Kick first;  ///< from rest to half a step
+  Kick full;
+};
+
+/// A state is two arrays [2N], x and y of a particle side by side, like Points.
+struct ScalarScratch {
+  explicit ScalarScratch(Index particles) : values(static_cast<std::size_t>(4 * particles)) {}
+  std::vector<double> values;
+};
+
+/// Advances one chain by one step under the forces [2N].
+void step(const ChainPlan& plan, bool first, const double* forces, double* positions,
+          double* velocities, ScalarScratch& scratch);
+
+/// One whole flight under shape control for each gain: final positions [2N] after another in
+/// `finals`, and their derivatives with respect to the gain in `tangents` unless that is null.
+/// Equal, bit for bit, to steps of `step` under shape_control.
+void fly(const ChainPlan& plan, const double* initial, const double* launch_velocity,
+         std::span<const double> gains, double* finals, double* tangents);
+
+/// Gains that `fly` takes side by side, one a SIMD lane.
+Index lanes();
+
+/// The instruction set in use, for people.
+std::string instruction_set();
+
+}  // namespace nuno::native

@@ -1,0 +1,197 @@
+#include <nuno/native.h>
+
+#include <nuno/error.h>
+#include <nuno/launch.h>
+
+#include "chain_kernel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+namespace nuno::native {
+namespace {
+
+/// (1 − e^(−κh))/κ: how long a kick of h lasts under drag [s].
+double kick_duration(double drag_rate, double h) {
+  return drag_rate * h > 0 ? -std::expm1(-drag_rate * h) / drag_rate : h;
+}
+
+ChainPlan::Kick make_kick(const Chain& chain, double h, double duration, double new_length_weight) {
+  const double stiffness = chain.cloth.stretch_stiffness;
+  const double damping = chain.cloth.stretch_damping;
+  const double q = kick_duration(chain.drag_rate(), duration);
+  ChainPlan::Kick kick;
+  kick.keep = std::exp(-chain.drag_rate() * duration);
+  kick.fall = q * chain.gravity;
+  kick.force = q / chain.particle_mass;
+  const double after = stiffness * h * new_length_weight + damping / 2;
+  const double before = stiffness * h * (new_length_weight - 0.5) + damping / 2;
+  kick.strain = stiffness / after;
+  kick.rate = before / after;
+  const Vector diagonal = 2 + chain.rest_length.array() / (after * kick.force);
+  kick.diagonal.assign(diagonal.begin(), diagonal.end());
+  return kick;
+}
+
+ChainPlan make_plan(const Problem& problem, Index steps) {
+  const Chain& chain = problem.chain;
+  ChainPlan plan;
+  plan.particles = chain.particles();
+  plan.steps = steps;
+  plan.h = problem.arrival_time / static_cast<double>(steps);
+  plan.rest_length.assign(chain.rest_length.begin(), chain.rest_length.end());
+  const auto at_hinges = [&](double value) {
+    std::vector<double> result(static_cast<std::size_t>(chain.particles()), 0.0);
+    for (Index i = 0; i < chain.hinge_length.size(); ++i) {
+      result[static_cast<std::size_t>(i + 1)] = value / chain.hinge_length[i];
+    }
+    return result;
+  };
+  plan.hinge_spring = at_hinges(chain.cloth.hinge_stiffness);
+  if (chain.cloth.hinge_damping > 0) plan.hinge_dashpot = at_hinges(chain.cloth.hinge_damping);
+  const Points shape = shape_of(problem.target);
+  plan.target_shape.assign(shape.data(), shape.data() + shape.size());
+  plan.first = make_kick(chain, plan.h, plan.h / 2, 0.5);
+  plan.full = make_kick(chain, plan.h, plan.h, 0.25);
+  return plan;
+}
+
+class ChainSimulation final : public Simulation {
+ public:
+  ChainSimulation(const ChainPlan& plan, const Points& positions, const Points& velocities)
+      : plan_(plan), positions_(positions), velocities_(velocities), scratch_(plan.particles) {}
+
+  void step(const Points& forces) override {
+    native::step(plan_, first_, forces.data(), positions_.data(), velocities_.data(), scratch_);
+    first_ = false;
+  }
+  const Points& positions() const override { return positions_; }
+  const Points& velocities() const override { return velocities_; }
+
+ private:
+  const ChainPlan& plan_;
+  Points positions_;
+  Points velocities_;
+  ScalarScratch scratch_;
+  bool first_ = true;
+};
+
+class NativeBackend final : public Backend {
+ public:
+  NativeBackend(const Problem& problem, Index steps)
+      : Backend(problem, steps), plan_(make_plan(problem, steps)) {}
+
+  std::string_view name() const override { return "native"; }
+
+  double largest_gain() const override {
+    // √(α/m)·h ≤ 0.2 rad: the control's own oscillation takes 30 steps or more.
+    const double h = time_step();
+    return 0.04 * problem().chain.particle_mass / (h * h);
+  }
+
+  DragRecurrence drag_recurrence() const override {
+    const double rate = problem().chain.drag_rate();
+    const double h = time_step();
+    return {h, plan_.first.keep, kick_duration(rate, h / 2), plan_.full.keep,
+            kick_duration(rate, h)};
+  }
+
+  std::unique_ptr<Simulation> start(const Points& velocities) const override {
+    return std::make_unique<ChainSimulation>(plan_, problem().chain.initial, velocities);
+  }
+
+  std::vector<double> errors(std::span<const double> gains) const override {
+    std::vector<double> result;
+    for (const ErrorSample& sample : fly_over(gains, false)) result.push_back(sample.error);
+    return result;
+  }
+
+  bool has_slopes() const override { return true; }
+  std::vector<ErrorSample> error_samples(std::span<const double> gains) const override {
+    return fly_over(gains, true);
+  }
+
+ private:
+  std::vector<ErrorSample> fly_over(std::span<const double> gains, bool with_slopes) const {
+    const Points velocities = launch(*this);
+    std::vector<ErrorSample> samples(gains.size());
+    const auto batch = static_cast<std::size_t>(lanes());
+    std::atomic<std::size_t> next = 0;
+    const auto work = [&] {
+      for (std::size_t first; (first = next.fetch_add(batch)) < gains.size();) {
+        const auto here = gains.subspan(first, std::min(batch, gains.size() - first));
+        fly_batch(here, velocities, with_slopes, std::span(samples).subspan(first, here.size()));
+      }
+    };
+    const std::size_t batches = (gains.size() + batch - 1) / batch;
+    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 1; t < std::min(cores, batches); ++t) threads.emplace_back(work);
+    work();
+    threads.clear();  // joins
+    return samples;
+  }
+
+  void fly_batch(std::span<const double> gains, const Points& velocities, bool with_slopes,
+                 std::span<ErrorSample> samples) const {
+    const Points& target = problem().target;
+    const Index size = target.size();
+    const Index count = static_cast<Index>(gains.size());
+    std::vector<double> finals(static_cast<std::size_t>(size * count));
+    std::vector<double> tangents(with_slopes ? finals.size() : 0);
+    fly(plan_, problem().chain.initial.data(), velocities.data(), gains, finals.data(),
+        with_slopes ? tangents.data() : nullptr);
+    for (Index lane = 0; lane < count; ++lane) {
+      const Eigen::Map<const Points> final(finals.data() + lane * size, 2, target.cols());
+      ErrorSample& sample = samples[static_cast<std::size_t>(lane)];
+      if (!final.allFinite()) {
+        sample = {std::numeric_limits<double>::infinity(), 0};
+        continue;
+      }
+      sample.error = arrival_error(final, target).mean;
+      if (!with_slopes) continue;
+      const Eigen::Map<const Points> tangent(tangents.data() + lane * size, 2, target.cols());
+      double slope = 0;
+      for (Index i = 0; i < target.cols(); ++i) {
+        const Vector miss = final.col(i) - target.col(i);
+        const double distance = miss.norm();
+        if (distance > 0) slope += miss.dot(tangent.col(i)) / distance;
+      }
+      sample.slope = slope / static_cast<double>(target.cols());
+    }
+  }
+
+  ChainPlan plan_;
+};
+
+/// The largest stable step of the explicit part: hinges, damping and shape control.
+///
+/// With ω the highest frequency of hinges and control and c the highest damping rate, the leapfrog
+/// with lagging dashpots is stable where h²ω² + 2hc < 4. A hinge's energy ½·kθ² has the largest
+/// curvature 16·k/ℓ² over the particles of a straight chain.
+double stable_step(const Chain& chain, double gain) {
+  const double shortest = chain.rest_length.minCoeff();
+  const double per_hinge =
+      16 / (chain.hinge_length.minCoeff() * shortest * shortest * chain.particle_mass);
+  const double squared_frequency =
+      per_hinge * chain.cloth.hinge_stiffness + gain / chain.particle_mass;
+  const double rate = per_hinge * chain.cloth.hinge_damping;
+  // h = 2·2/(c + √(c² + 4ω²)), the root of h²ω² + 2hc = 4.
+  return 4 / (rate + std::sqrt(rate * rate + 4 * squared_frequency));
+}
+
+}  // namespace
+
+std::unique_ptr<Backend> make_backend(const Problem& problem, std::optional<double> time_step) {
+  // To be tuned.
+  const double stable = 0.5 * stable_step(problem.chain, 0);
+  const double chosen = std::min(stable, problem.arrival_time / 400);
+  const double wished = time_step ? std::min(*time_step, stable) : chosen;
+  const auto steps = static_cast<Index>(std::ceil(problem.arrival_time / wished * (1 - 1e-12)));
+  return std::make_unique<NativeBackend>(problem, std::max<Index>(steps, 1));
+}
+
+}  // namespace nuno::native
