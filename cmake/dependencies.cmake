@@ -60,7 +60,10 @@ if("fmt" IN_LIST NUNO_FETCHED)
   nuno_name_target(fmt::fmt fmt)
 endif()
 
-set(CMAKE_POLICY_DEFAULT_CMP0077 NEW) # the variables below are options of the projects fetched
+# The variables below are options of the projects fetched.
+set(CMAKE_POLICY_DEFAULT_CMP0077 NEW)
+set(CMAKE_POLICY_DEFAULT_CMP0126 NEW)
+set(BUILD_TESTING OFF)
 set(HWY_ENABLE_CONTRIB OFF)
 set(HWY_ENABLE_EXAMPLES OFF)
 set(HWY_ENABLE_INSTALL OFF)
