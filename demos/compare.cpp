@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "commands.h"
+#include "comparison.h"
+#include "engines.h"
+#include "json_files.h"
+#include "output.h"
+#include "rollouts.h"
+#include "summary.h"
+
+namespace nuno {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The files among `paths`, and the *.json of the folders among them in alphabetical order.
+std::vector<std::string> scene_paths(const std::vector<std::string>& paths) {
+  std::vector<std::string> result;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    if (!fs::is_directory(path, error)) {
+      result.push_back(path);
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (auto entry = fs::directory_iterator(path, error); !error && entry != fs::end(entry);
+         entry.increment(error)) {
+      if (entry->path().extension() == ".json") inside.push_back(entry->path().string());
+    }
+    if (error) throw InputError(fmt::format("{}: /: {}", path, error.message()));
+    if (inside.empty()) throw InputError(fmt::format("{}: /: is a folder without a *.json", path));
+    std::ranges::sort(inside);
+    result.insert(result.end(), inside.begin(), inside.end());
+  }
+  return result;
+}
+
+void create_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error || !fs::is_directory(path, error)) {
+    throw OutputError(fmt::format("{}: is not a folder that can be created: {}", path,
+                                  error ? error.message() : "something else has that name"));
+  }
+}
+
+// Scene, engine, then what each engine achieved, then how far they are apart.
+constexpr const char* table_row = "{:<{}.32}  {:<6}  {:>11}  {:>9}  {:>8}  {:>11}  {:>8}  {:>12}\n";
+
+void print_heading(std::FILE* table, std::size_t width) {
+  fmt::print(table, fmt::runtime(table_row), "scene", width, "engine", "launch only", "best α",
+             "error", "evaluations", "time", "shapes apart");
+  fmt::print(table, fmt::runtime(table_row), "", width, "", "% of L", "N/m", "% of L", "rollouts",
+             "", "% of L");
+}
+
+void print_rows(std::FILE* table, std::size_t width, const Comparison& comparison) {
+  const double percent = 100 / comparison.cloth_length;
+  std::string scene = printable(comparison.scene);
+  std::string apart = fmt::format("{:.3f}", 100 * comparison.shape_difference.mean);
+  for (const ComparisonRow& row : comparison.rows) {
+    fmt::print(table, fmt::runtime(table_row), scene, width, row.backend,
+               fmt::format("{:.3f}", percent * row.launch_only_error),
+               fmt::format("{:.4g}", row.gain), fmt::format("{:.3f}", percent * row.error.mean),
+               row.evaluations, duration(row.seconds), apart);
+    scene.clear();  // both stand for the two rows
+    apart.clear();
+  }
+}
+
+}  // namespace
+
+ExitStatus compare(const CompareOptions& options) {
+  // Every scene is read and every engine made before the first of them runs: a mistake in the last
+  // scene shows at once.
+  struct Pair {
+    SceneFile file;
+    std::unique_ptr<Backend> native, box2d;
+  };
+  std::vector<Pair> pairs;
+  std::size_t width = 5;
+  for (const std::string& path : scene_paths(options.scenes)) {
+    SceneFile file = read_scene_file(path);
+    auto native = make_backend("native", file);
+    auto box2d = make_backend("box2d", file);
+    width = std::max(width, fmt::formatted_size("{:.32}", printable(file.scene.name)));
+    pairs.push_back({std::move(file), std::move(native), std::move(box2d)});
+  }
+  std::string out = options.out;
+  if (!out.empty() && out != "-") {
+    create_folder(out);
+    out = (fs::path(out) / "compare.json").string();
+    require_writable(out);
+  }
+
+  std::FILE* const table = people(out);
+  ExitStatus status = ExitStatus::done;
+  std::vector<Comparison> comparisons;
+  print_heading(table, width);
+  for (const Pair& pair : pairs) {
+    Comparison comparison = compare_engines(pair.file.scene.name, *pair.native, *pair.box2d);
+    clear_progress();
+    if (comparison.divergence) {
+      const auto& [backend, flight] = *comparison.divergence;
+      report_divergence(pair.file.path, backend == "native" ? *pair.native : *pair.box2d, flight);
+      status = ExitStatus::diverged;
+      continue;
+    }
+    print_rows(table, width, comparison);
+    std::fflush(table);
+    comparisons.push_back(std::move(comparison));
+  }
+  fmt::print(table,
+             "L is the cloth's length. Shapes apart: the end shapes of both engines at the best α "
+             "of native,\ncentroids aligned, mean over the particles.\n");
+  // What is left of a comparison with diverged scenes is still one; without any, it is none.
+  if (!out.empty() && !comparisons.empty()) {
+    write_output(out, [&](std::FILE* file) { write_comparisons(file, comparisons); });
+  }
+  return status;
+}
+
+}  // namespace nuno

@@ -1,0 +1,105 @@
+#include "engines.h"
+
+#include <fmt/format.h>
+
+#include <nuno/box2d.h>
+#include <nuno/native.h>
+
+#include <cassert>
+
+namespace nuno {
+namespace {
+
+// 1.6 GB of positions, and a file of about 4 GB.
+constexpr double most_points_in_frames = 1e8;
+
+// Minutes on native, an hour on box2d, for one rollout: more is a mistake in the scene.
+constexpr double most_particle_steps = 1e10;
+
+bool too_long(double steps, const SceneFile& file) {
+  return !(steps * static_cast<double>(file.scene.particles) <= most_particle_steps);
+}
+
+std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file,
+                                      std::optional<double> time_step) {
+  if (time_step && too_long(file.scene.arrival_time / *time_step, file)) {
+    throw InputError(fmt::format(
+        "{}: /time_step: {} is not >= {:.4g}: {} particles over {} s would take too long",
+        file.path, *time_step,
+        file.scene.arrival_time * static_cast<double>(file.scene.particles) / most_particle_steps,
+        file.scene.particles, file.scene.arrival_time));
+  }
+  std::unique_ptr<Backend> backend;
+  try {
+    if (name == "native") {
+      backend = native::make_backend(file.problem, time_step);
+    } else {
+      assert(name == "box2d");
+      backend = box2d::make_backend(file.problem, {.time_step = time_step});
+    }
+  } catch (const InputError& error) {
+    // An engine knows the problem, but not the file that it came from.
+    throw InputError(fmt::format("{}: {}", file.path, error.what()));
+  }
+  if (too_long(static_cast<double>(backend->steps()), file)) {
+    throw InputError(
+        fmt::format("{}: /particles: {} is not few enough: so stiff and fine a cloth takes {} "
+                    "steps on {}, which is too long",
+                    file.path, file.scene.particles, backend->steps(), name));
+  }
+  return backend;
+}
+
+}  // namespace
+
+SceneFile read_scene_file(const std::string& path, std::optional<double> time_step) {
+  SceneFile file{path, read_scene(path), {}};
+  if (time_step) {
+    file.scene.time_step = time_step;
+    validate(file.scene, "--time-step");
+  }
+  // make_problem's messages begin with the scene's name; people look for the file's.
+  Scene named_after_file = file.scene;
+  named_after_file.name = path;
+  file.problem = make_problem(named_after_file);
+  return file;
+}
+
+void require_few_frames(const SceneFile& file) {
+  const Scene& scene = file.scene;
+  const double most =
+      most_points_in_frames / static_cast<double>(scene.particles) / scene.arrival_time;
+  if (scene.frames_per_second > most) {
+    throw InputError(fmt::format(
+        "{}: /frames_per_second: {} is not <= {:.4g}, the most that a result of {} particles over "
+        "{} s holds",
+        file.path, scene.frames_per_second, most, scene.particles, scene.arrival_time));
+  }
+}
+
+std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file) {
+  return make_backend(name, file, file.scene.time_step);
+}
+
+std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
+                                               double gain) {
+  std::unique_ptr<Backend> backend = make_backend(name, file);
+  while (gain > backend->largest_gain()) {
+    if (too_long(2 * static_cast<double>(backend->steps()), file)) {
+      throw InputError(
+          fmt::format("--alpha: {} is not <= {:.4g}, the largest gain that {} steps "
+                      "on {} resolve; more would take too long",
+                      gain, backend->largest_gain(), backend->steps(), name));
+    }
+    backend = make_backend(name, file, backend->time_step() / 2);
+  }
+  return backend;
+}
+
+OptimizeSummary run_optimizer(std::string_view name, const Objective& objective) {
+  if (name == "steepest-descent") return steepest_descent(objective);
+  assert(name == "global");
+  return global_search(objective);
+}
+
+}  // namespace nuno

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <nuno/backend.h>
+#include <nuno/optimize.h>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace nuno {
+
+/// A scene file, read, validated and resampled.
+struct SceneFile {
+  std::string path;
+  Scene scene;
+  Problem problem;
+};
+
+/// `time_step`, if given, takes the place of the scene's.
+SceneFile read_scene_file(const std::string& path, std::optional<double> time_step = std::nullopt);
+
+/// Throws InputError if a result of this scene would hold more frames than memory does.
+void require_few_frames(const SceneFile& file);
+
+inline constexpr std::array<std::string_view, 2> backend_names = {"native", "box2d"};
+
+/// The engine called `name`, one of backend_names, made ready for the scene. Throws InputError
+/// where one rollout would take hours.
+std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file);
+
+/// The same with a step that is short enough for `gain` as well.
+std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
+                                               double gain);
+
+inline constexpr std::array<std::string_view, 2> optimizer_names = {"global", "steepest-descent"};
+
+/// Runs the optimiser called `name`, one of optimizer_names.
+OptimizeSummary run_optimizer(std::string_view name, const Objective& objective);
+
+}  // namespace nuno

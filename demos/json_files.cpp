@@ -1,0 +1,148 @@
+#include "json_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace nuno {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string on_one_line(const Json& value) {
+  // A name may come from a file's name, which need not be UTF-8.
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+int depth(const Json& value) {
+  int deepest = 0;
+  for (const Json& item : value) {
+    if (item.is_structured()) deepest = std::max(deepest, depth(item));
+  }
+  return deepest + (value.is_object() ? 2 : 1);
+}
+
+/// Prints a shape, or an object of numbers, on one line, and what holds several of them over
+/// several: a line of the file is one thing to look at or to compare.
+void print(std::FILE* file, const Json& value, std::size_t indent = 0) {
+  if (!value.is_structured() || depth(value) <= 2) {
+    fmt::print(file, "{}", on_one_line(value));
+    return;
+  }
+  const bool is_object = value.is_object();
+  fmt::print(file, "{}", is_object ? '{' : '[');
+  const char* separator = "\n";
+  for (const auto& item : value.items()) {
+    fmt::print(file, "{}{:{}}", separator, "", indent + 1);
+    if (is_object) fmt::print(file, "{}: ", on_one_line(item.key()));
+    print(file, item.value(), indent + 1);
+    separator = ",\n";
+  }
+  fmt::print(file, "\n{:{}}{}", "", indent, is_object ? '}' : ']');
+}
+
+Json to_json(const Points& points) {
+  Json array = Json::array();
+  for (Index i = 0; i < points.cols(); ++i) array.push_back({points(0, i), points(1, i)});
+  return array;
+}
+
+Json to_json(const Optimization& optimization) {
+  const OptimizeSummary& summary = optimization.summary;
+  Json history = Json::array();
+  for (const Evaluation& evaluation : summary.history) {
+    // A diverged rollout has no error to note.
+    if (!std::isfinite(evaluation.error)) continue;
+    history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
+  }
+  return {{"optimizer", optimization.optimizer},
+          {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
+          {"evaluations", summary.evaluations},
+          {"seconds", summary.seconds},
+          {"history", history}};
+}
+
+/// Frames one by one: all of them as JSON at once take ten times their own memory.
+void print_frames(std::FILE* file, const Rollout& rollout) {
+  fmt::print(file, " \"frames\": {{\n  \"times\": {},\n  \"positions\": [",
+             on_one_line(rollout.frame_times));
+  const char* separator = "\n";
+  for (const Points& positions : rollout.frame_positions) {
+    fmt::print(file, "{}   {}", separator, on_one_line(to_json(positions)));
+    separator = ",\n";
+  }
+  fmt::print(file, "\n  ]\n }}");
+}
+
+Json to_json(const ComparisonRow& row) {
+  return {{"backend", row.backend},
+          {"launch_only_error", row.launch_only_error},
+          {"alpha", row.gain},
+          {"error", row.error.mean},
+          {"max_error", row.error.max},
+          {"centroid_error", row.error.centroid},
+          {"control_effort", row.control_effort},
+          {"evaluations", row.evaluations},
+          {"seconds", row.seconds},
+          {"error_with_the_other_alpha", row.error_with_the_other_gain}};
+}
+
+Json to_json(const Comparison& comparison) {
+  Json curve = {{"alpha", comparison.curve_gains}};
+  for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
+    curve[comparison.rows[i].backend] = comparison.curve_errors[i];  // infinity becomes null
+  }
+  return {{"scene", comparison.scene},
+          {"rows", {to_json(comparison.rows[0]), to_json(comparison.rows[1])}},
+          {"shape_difference",
+           {{"at_alpha", comparison.rows[0].gain},
+            {"mean", comparison.shape_difference.mean},
+            {"max", comparison.shape_difference.max}}},
+          {"alpha_curve", curve}};
+}
+
+}  // namespace
+
+void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+                  const Rollout& rollout, const std::optional<Optimization>& optimization) {
+  const Problem& problem = backend.problem();
+  Json head = {{"nuno_result", 1},
+               {"scene", scene},
+               {"backend", backend.name()},
+               {"status", "ok"},
+               {"alpha", rollout.gain},
+               {"time_step", backend.time_step()},
+               {"steps", backend.steps()},
+               {"cloth_length", problem.chain.length},
+               {"target_scale", problem.target_scale},
+               {"error",
+                {{"mean", rollout.error.mean},
+                 {"max", rollout.error.max},
+                 {"centroid", rollout.error.centroid},
+                 {"relative", rollout.error.mean / problem.chain.length}}},
+               {"control_effort", rollout.control_effort}};
+  if (optimization) head["optimization"] = to_json(*optimization);
+  head["launch_velocity"] = to_json(rollout.launch_velocity);
+  head["target"] = to_json(problem.target);
+  head["final"] = to_json(rollout.final);
+
+  fmt::print(file, "{{\n");
+  for (const auto& item : head.items()) {
+    fmt::print(file, " {}: ", on_one_line(item.key()));
+    print(file, item.value(), 1);
+    fmt::print(file, ",\n");
+  }
+  print_frames(file, rollout);
+  fmt::print(file, "\n}}\n");
+}
+
+void write_comparisons(std::FILE* file, const std::vector<Comparison>& comparisons) {
+  Json scenes = Json::array();
+  for (const Comparison& comparison : comparisons) scenes.push_back(to_json(comparison));
+  print(file, {{"nuno_comparison", 1}, {"scenes", scenes}});
+  fmt::print(file, "\n");
+}
+
+}  // namespace nuno

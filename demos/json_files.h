@@ -1,0 +1,29 @@
+#pragma once
+
+#include <nuno/backend.h>
+#include <nuno/optimize.h>
+#include <nuno/rollout.h>
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "comparison.h"
+
+namespace nuno {
+
+/// How the gain of a result was found.
+struct Optimization {
+  std::string optimizer;
+  OptimizeSummary summary;
+};
+
+/// The result JSON of one rollout, which has not diverged.
+void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+                  const Rollout& rollout, const std::optional<Optimization>& optimization);
+
+/// compare.json. A point of an alpha curve at which a rollout diverged is null; nothing else is.
+void write_comparisons(std::FILE* file, const std::vector<Comparison>& comparisons);
+
+}  // namespace nuno

@@ -1,0 +1,223 @@
+// The command line of the program `nuno`: options in, exit status out.
+
+#include <fmt/format.h>
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include <nuno/scene.h>
+
+#include <charconv>
+#include <cmath>
+#include <csignal>
+#include <functional>
+
+#include "commands.h"
+#include "engines.h"
+#include "output.h"
+
+namespace nuno {
+namespace {
+
+/// A number of the command line, to its last bit. Throws CLI::ValidationError.
+double number(const std::string& option, const std::string& text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value)) {
+    throw CLI::ValidationError(option, fmt::format("\"{}\" is not a finite number", text));
+  }
+  return value;
+}
+
+std::string word(const std::string& option, const std::string& text,
+                 std::span<const std::string_view> words) {
+  if (std::ranges::find(words, text) == words.end()) {
+    throw CLI::ValidationError(
+        option, fmt::format("\"{}\" is not one of {}", text, fmt::join(words, ", ")));
+  }
+  return text;
+}
+
+std::string not_empty(const std::string& option, const std::string& text) {
+  if (text.empty()) throw CLI::ValidationError(option, "\"\" is not a name");
+  return text;
+}
+
+void add_scene(CLI::App& command, std::string& scene) {
+  command
+      .add_option_function<std::string>(
+          "SCENE", [&](const std::string& text) { scene = not_empty("SCENE", text); },
+          "Scene file (JSON)")
+      ->type_name("")
+      ->required();
+}
+
+void add_backend(CLI::App& command, std::string& backend) {
+  command
+      .add_option_function<std::string>(
+          "--backend",
+          [&](const std::string& text) { backend = word("--backend", text, backend_names); },
+          fmt::format("Engine: {}", fmt::join(backend_names, " or ")))
+      ->type_name("NAME")
+      ->default_str(backend);
+}
+
+void add_time_step(CLI::App& command, std::optional<double>& time_step) {
+  command
+      .add_option_function<std::string>(
+          "--time-step",
+          [&](const std::string& text) {
+            time_step = number("--time-step", text);
+            if (!(*time_step > 0)) {
+              throw CLI::ValidationError("--time-step", fmt::format("{} is not > 0", text));
+            }
+          },
+          "Time step [s], > 0; by default the scene's or the engine's")
+      ->type_name("H");
+}
+
+void add_out(CLI::App& command, std::string& out, const char* type, const char* description) {
+  command
+      .add_option_function<std::string>(
+          "--out", [&](const std::string& text) { out = not_empty("--out", text); }, description)
+      ->type_name(type);
+}
+
+constexpr const char* commands = "Commands";  // their heading in the help
+constexpr const char* out_file = "Result file (JSON); - is standard output";
+
+ExitStatus fail(ExitStatus status, const std::string& message) {
+  complain(message);
+  return status;
+}
+
+/// What was wrong with the command line, in the words of all our messages.
+std::string explain(const CLI::App& app, const CLI::ParseError& error) {
+  const std::string what = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+    const std::string extra = app.remaining(true).front();
+    if (extra.starts_with("-")) return fmt::format("{}: is not a known option", extra);
+    if (app.get_subcommands().empty()) {
+      std::vector<std::string> names;
+      for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(command->get_name());
+      }
+      return fmt::format("nuno: \"{}\" is not one of {}", extra, fmt::join(names, ", "));
+    }
+    return fmt::format("\"{}\": is one argument too many", extra);
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) {
+    return what.substr(0, what.find(' ')) + ": is missing; it is required";
+  }
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
+    return what.substr(0, what.find(':')) + ": takes exactly one value";
+  }
+  return what;
+}
+
+ExitStatus run(int argc, char** argv) {
+  CLI::App app("Throws a cloth so that it arrives at a drawn target: in place, in shape, on time.",
+               "nuno");
+  app.set_version_flag("--version", "nuno " NUNO_VERSION, "Print the version and exit");
+  app.set_help_flag("--help,-h", "Print this help and exit");
+  app.footer(
+      "Exit status: 0 done; 1 an output cannot be written; 2 bad usage or a bad scene;\n"
+      "3 the simulation diverged. 'nuno COMMAND --help' tells a command's options.");
+  app.require_subcommand(0, 1);  // one command line is one command
+  app.get_formatter()->label("SUBCOMMAND", "COMMAND");
+  app.get_formatter()->label("Positionals", "Arguments");
+  app.get_formatter()->label("REQUIRED", "");
+  std::function<ExitStatus()> chosen;
+
+  SimulateOptions simulation;
+  CLI::App& simulate_command = *app.add_subcommand("simulate", "Throw the cloth once, at one gain");
+  add_scene(simulate_command, simulation.scene);
+  add_backend(simulate_command, simulation.backend);
+  simulate_command
+      .add_option_function<std::string>(
+          "--alpha",
+          [&](const std::string& text) {
+            simulation.gain = number("--alpha", text);
+            if (!(simulation.gain >= 0)) {
+              throw CLI::ValidationError("--alpha", fmt::format("{} is not >= 0", text));
+            }
+          },
+          "Gain of the shape control [N/m], >= 0; 0 is launch only")
+      ->type_name("A")
+      ->default_str(fmt::format("{}", simulation.gain));
+  add_time_step(simulate_command, simulation.time_step);
+  add_out(simulate_command, simulation.out, "FILE", out_file);
+  simulate_command.group(commands);
+  simulate_command.callback([&] { chosen = [&] { return simulate(simulation); }; });
+
+  OptimizeOptions optimization;
+  CLI::App& optimize_command =
+      *app.add_subcommand("optimize", "Find the gain with the smallest error at arrival");
+  add_scene(optimize_command, optimization.scene);
+  add_backend(optimize_command, optimization.backend);
+  optimize_command
+      .add_option_function<std::string>(
+          "--optimizer",
+          [&](const std::string& text) {
+            optimization.optimizer = word("--optimizer", text, optimizer_names);
+          },
+          fmt::format("Search: {}", fmt::join(optimizer_names, " or ")))
+      ->type_name("NAME")
+      ->default_str(optimization.optimizer);
+  add_time_step(optimize_command, optimization.time_step);
+  add_out(optimize_command, optimization.out, "FILE", out_file);
+  optimize_command.group(commands);
+  optimize_command.callback([&] { chosen = [&] { return optimize(optimization); }; });
+
+  CompareOptions comparison;
+  CLI::App& compare_command =
+      *app.add_subcommand("compare", "Both engines on the same scenes, side by side");
+  compare_command
+      .add_option_function<std::vector<std::string>>(
+          "SCENE",
+          [&](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) comparison.scenes.push_back(not_empty("SCENE", text));
+          },
+          "Scene files, or folders of them (*.json)")
+      ->type_name("")
+      ->required();
+  add_out(compare_command, comparison.out, "DIR",
+          "Folder for compare.json; - is compare.json on standard output");
+  compare_command.group(commands);
+  compare_command.callback([&] { chosen = [&] { return compare(comparison); }; });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wish) {
+    app.exit(wish);  // prints the help or the version
+    return ExitStatus::done;
+  } catch (const CLI::ParseError& error) {
+    return fail(ExitStatus::bad_input, explain(app, error));
+  }
+  if (!chosen) return fail(ExitStatus::bad_input, "nuno: a command is missing; see nuno --help");
+  return chosen();
+}
+
+}  // namespace
+}  // namespace nuno
+
+int main(int argc, char** argv) {
+  using namespace nuno;
+  // A reader that leaves early is an output that cannot be written, not a silent death.
+  std::signal(SIGPIPE, SIG_IGN);
+  ExitStatus status;
+  try {
+    status = run(argc, argv);
+    require_standard_output_written();
+  } catch (const InputError& error) {
+    status = fail(ExitStatus::bad_input, error.what());
+  } catch (const OutputError& error) {
+    status = fail(ExitStatus::unwritable, error.what());
+  } catch (const std::system_error& error) {  // fmt::print's, where nothing takes the text
+    status = fail(ExitStatus::unwritable, error.what());
+  } catch (const std::bad_alloc&) {
+    status = fail(ExitStatus::bad_input, "the scene needs more memory than there is");
+  }
+  return static_cast<int>(status);
+}

@@ -1,0 +1,46 @@
+#include "rollouts.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "output.h"
+
+namespace nuno {
+
+bool diverged(const Rollout& rollout) {
+  return rollout.status == RolloutStatus::diverged || !rollout.final.allFinite() ||
+         !std::isfinite(rollout.error.mean) || !std::isfinite(rollout.error.max) ||
+         !std::isfinite(rollout.error.centroid) || !std::isfinite(rollout.control_effort);
+}
+
+void report_divergence(const std::string& scene_path, const Backend& backend,
+                       const Rollout& rollout) {
+  const bool stopped = rollout.status == RolloutStatus::diverged;
+  complain(fmt::format("{}: diverged on {} at α = {} N/m in step {} of {}: {}", scene_path,
+                       backend.name(), rollout.gain,
+                       stopped ? rollout.diverged_at_step : backend.steps(), backend.steps(),
+                       stopped ? rollout.reason : "the error is no longer finite"));
+}
+
+Objective with_progress(Objective objective, const std::string& label) {
+  const auto count = std::make_shared<std::size_t>(0);
+  const auto counted = [count, label](std::span<const double> gains) {
+    *count += gains.size();
+    show_progress(fmt::format("{}: {} rollouts", label, *count));
+  };
+  objective.errors = [counted, errors = objective.errors](std::span<const double> gains) {
+    counted(gains);
+    return errors(gains);
+  };
+  if (objective.samples) {
+    objective.samples = [counted, samples = objective.samples](std::span<const double> gains) {
+      counted(gains);
+      return samples(gains);
+    };
+  }
+  return objective;
+}
+
+}  // namespace nuno

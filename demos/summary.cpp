@@ -1,0 +1,31 @@
+#include "summary.h"
+
+#include <fmt/format.h>
+
+#include "output.h"
+
+namespace nuno {
+
+std::string duration(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} µs", 1e6 * seconds);
+  if (seconds < 1) return fmt::format("{:.3g} ms", 1e3 * seconds);
+  if (seconds < 120) return fmt::format("{:.3g} s", seconds);
+  const auto whole = static_cast<long long>(seconds);
+  return fmt::format("{} min {} s", whole / 60, whole % 60);
+}
+
+void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,
+                   const Rollout& rollout) {
+  const Chain& chain = backend.problem().chain;
+  const double percent = 100 / chain.length;
+  fmt::print(file, "{}: {} particles on {}, {} steps of {}\n", printable(scene), chain.particles(),
+             backend.name(), backend.steps(), duration(backend.time_step()));
+  fmt::print(file, "  {:<17} {:.4g} N/m\n", "gain α", rollout.gain);
+  fmt::print(file, "  {:<17} {:.4g} % of the cloth's length; worst particle {:.4g} %\n", "error",
+             percent * rollout.error.mean, percent * rollout.error.max);
+  fmt::print(file, "  {:<17} {:.3g} m from the target's\n", "centroid", rollout.error.centroid);
+  fmt::print(file, "  {:<17} {:.4g} {}\n", "control effort", rollout.control_effort,
+             chain.gravity > 0 ? "of a particle's weight" : "of m·L/t0²");
+}
+
+}  // namespace nuno

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nuno/rollout.h>
+
+#include <cstdio>
+#include <string>
+
+namespace nuno {
+
+/// A time that a person reads: "4.1 ms", "1.25 s", "3 min 20 s".
+std::string duration(double seconds);
+
+/// A few lines for people on what a rollout did.
+void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,
+                   const Rollout& rollout);
+
+}  // namespace nuno
