@@ -7,6 +7,7 @@
 #include <cassert>
 #include <chrono>
 #include <cmath>
+#include <limits>
 // Boost 1.74's header needs it and does not include it.
 #include <boost/math/tools/minima.hpp>
 #include <cstdint>
@@ -96,7 +97,7 @@ OptimizeSummary steepest_descent(const Objective& objective,
     if (lambda == 0) lambda = options.first_step * objective.gain_scale / std::abs(derivative);
 
     bool moved = false;
-    double move = 0;
+    double move = std::numeric_limits<double>::infinity();
     while (counter.count() < options.largest_evaluations) {
       const double gain =
           std::clamp(summary.gain - lambda * derivative, 0.0, objective.largest_gain);

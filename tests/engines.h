@@ -1,0 +1,42 @@
+#pragma once
+
+#include <nuno/box2d.h>
+#include <nuno/native.h>
+
+#include <ostream>
+
+namespace nuno {
+
+/// An engine as the shared suites see it, with what its arithmetic can promise.
+struct Engine {
+  const char* name;
+  std::unique_ptr<Backend> (*make)(const Problem& problem, std::optional<double> time_step);
+  /// Rounding of a coordinate that moves over metres: 2⁻⁵³ or 2⁻²⁴, times what a thousand steps
+  /// add.
+  double rounding;
+};
+
+inline std::unique_ptr<Backend> make_native(const Problem& problem,
+                                            std::optional<double> time_step) {
+  return native::make_backend(problem, time_step);
+}
+
+template <box2d::Hinge hinge>
+std::unique_ptr<Backend> make_box2d(const Problem& problem, std::optional<double> time_step) {
+  box2d::Options options;
+  options.time_step = time_step;
+  options.hinge = hinge;
+  return box2d::make_backend(problem, options);
+}
+
+inline const Engine native_engine = {"native", make_native, 1e-11};
+inline const Engine box2d_weld_engine = {"box2d_soft_weld", make_box2d<box2d::Hinge::soft_weld>,
+                                         1e-4};
+inline const Engine box2d_pair_engine = {"box2d_spring_pair", make_box2d<box2d::Hinge::spring_pair>,
+                                         1e-4};
+
+inline std::ostream& operator<<(std::ostream& out, const Engine& engine) {
+  return out << engine.name;
+}
+
+}  // namespace nuno
