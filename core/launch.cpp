@@ -1,5 +1,7 @@
 #include <nuno/launch.h>
 
+#include <nuno/reference_motion.h>
+
 #include <cassert>
 #include <cmath>
 
@@ -79,12 +81,14 @@ Points without_stretching(const Points& positions, const Points& velocities) {
 
 Points launch(const Backend& backend) {
   const Problem& problem = backend.problem();
-  const Points ballistic =
-      ballistic_launch(problem.chain.initial, problem.target, problem.chain.gravity,
-                       backend.drag_recurrence(), backend.steps());
+  Points velocities = ballistic_launch(problem.chain.initial, problem.target, problem.chain.gravity,
+                                       backend.drag_recurrence(), backend.steps());
+  if (const ReferenceMotion motion(problem, backend.time_step()); motion.moves()) {
+    velocities = motion.velocity().colwise() + centroid(velocities);
+  }
   return problem.launch == Launch::inextensible
-             ? without_stretching(problem.chain.initial, ballistic)
-             : ballistic;
+             ? without_stretching(problem.chain.initial, velocities)
+             : velocities;
 }
 
 }  // namespace nuno

@@ -11,6 +11,9 @@ Problem make_problem(const Scene& scene) {
   Problem problem;
   problem.arrival_time = scene.arrival_time;
   problem.launch = scene.launch;
+  problem.reference = scene.reference;
+  problem.arrival = scene.arrival;
+  problem.damping_ratio = scene.damping_ratio;
 
   Chain& chain = problem.chain;
   const auto particles = static_cast<double>(scene.particles);

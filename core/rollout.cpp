@@ -1,8 +1,10 @@
 #include <nuno/rollout.h>
 
 #include <nuno/launch.h>
+#include <nuno/reference_motion.h>
 #include <nuno/shape_control.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -42,6 +44,15 @@ class Recorder {
   Rollout& rollout_;
 };
 
+double largest_strain(const Chain& chain, const Points& x) {
+  double largest = 0;
+  for (Index i = 0; i < chain.rest_length.size(); ++i) {
+    const double length = std::hypot(x(0, i + 1) - x(0, i), x(1, i + 1) - x(1, i));
+    largest = std::max(largest, std::abs(length / chain.rest_length[i] - 1));
+  }
+  return largest;
+}
+
 }  // namespace
 
 double effort_unit(const Problem& problem) {
@@ -54,8 +65,9 @@ double effort_unit(const Problem& problem) {
 Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options) {
   assert(gain >= 0);
   const Problem& problem = backend.problem();
-  const Points target_shape = shape_of(problem.target);
   const double h = backend.time_step();
+  const double damping = shape_damping(problem.damping_ratio, gain, problem.chain.particle_mass);
+  ReferenceMotion reference(problem, h);
 
   Rollout result;
   result.gain = gain;
@@ -69,7 +81,10 @@ Rollout rollout(const Backend& backend, double gain, const RolloutOptions& optio
   double squared_force = 0;
   for (Index n = 0; n < backend.steps(); ++n) {
     if (gain > 0) {
-      shape_control(target_shape, cloth->positions(), gain, forces);
+      shape_control(reference.shape(), cloth->positions(), gain, forces);
+      if (damping > 0) {
+        add_shape_damping(reference.velocity(), cloth->velocities(), damping, forces);
+      }
       squared_force += forces.squaredNorm();
     }
     const bool arriving = n + 1 == backend.steps();
@@ -77,12 +92,15 @@ Rollout rollout(const Backend& backend, double gain, const RolloutOptions& optio
     const bool frame_due = arriving || recorder.due_by(time);
     if (frame_due) before = cloth->positions();
     cloth->step(forces);
+    reference.advance();
     if (!cloth->positions().allFinite()) {
       result.status = RolloutStatus::diverged;
       result.diverged_at_step = n + 1;
       result.reason = "a particle's position is no longer finite";
       break;
     }
+    result.max_strain =
+        std::max(result.max_strain, largest_strain(problem.chain, cloth->positions()));
     if (frame_due) recorder.record(time - h, before, time, cloth->positions(), arriving);
   }
 

@@ -78,6 +78,7 @@ void validate(const Scene& scene, const std::string& source) {
   require_not_negative(source, "/cloth/hinge_damping", scene.cloth.hinge_damping);
   if (scene.time_step) require_positive(source, "/time_step", *scene.time_step);
   require_positive(source, "/frames_per_second", scene.frames_per_second);
+  require_not_negative(source, "/damping_ratio", scene.damping_ratio);
   // e^z must stay a number with digits to spare.
   const double drag_turns = scene.cloth.air_drag / scene.cloth.mass * scene.arrival_time;
   if (!(drag_turns <= 700)) {

@@ -120,6 +120,10 @@ struct Word {
 
 constexpr std::array launch_words = {Word<Launch>{"ballistic", Launch::ballistic},
                                      Word<Launch>{"inextensible", Launch::inextensible}};
+constexpr std::array reference_words = {Word<Reference>{"hold", Reference::hold},
+                                        Word<Reference>{"morph", Reference::morph}};
+constexpr std::array arrival_words = {Word<Arrival>{"pass", Arrival::pass},
+                                      Word<Arrival>{"settle", Arrival::settle}};
 constexpr std::array target_length_words = {Word<TargetLength>{"fit", TargetLength::fit},
                                             Word<TargetLength>{"as-drawn", TargetLength::as_drawn}};
 
@@ -178,9 +182,10 @@ Json to_json(const Points& points) {
 Scene parse_scene(const std::string& text, const std::string& source) {
   const Json json = parse_json(text, source);
   const Field root{source, ""};
-  static constexpr std::array<std::string_view, 12> known = {
-      "nuno_scene", "name",  "particles", "arrival_time",  "gravity",   "initial",
-      "target",     "cloth", "launch",    "target_length", "time_step", "frames_per_second"};
+  static constexpr std::array<std::string_view, 15> known = {
+      "nuno_scene", "name",          "particles",     "arrival_time", "gravity",
+      "initial",    "target",        "cloth",         "launch",       "reference",
+      "arrival",    "damping_ratio", "target_length", "time_step",    "frames_per_second"};
   static constexpr std::array<std::string_view, 6> known_cloth = {
       "mass",         "air_drag", "stretch_stiffness", "stretch_damping", "hinge_stiffness",
       "hinge_damping"};
@@ -213,6 +218,9 @@ Scene parse_scene(const std::string& text, const std::string& source) {
     read(cloth, at, "hinge_damping", scene.cloth.hinge_damping);
   }
   read(json, root, "launch", launch_words, scene.launch);
+  read(json, root, "reference", reference_words, scene.reference);
+  read(json, root, "arrival", arrival_words, scene.arrival);
+  read(json, root, "damping_ratio", scene.damping_ratio);
   read(json, root, "target_length", target_length_words, scene.target_length);
   if (json.contains("time_step")) {
     scene.time_step = number(json["time_step"], root.child("time_step"));
@@ -251,6 +259,9 @@ std::string to_json(const Scene& scene) {
                    {"hinge_stiffness", scene.cloth.hinge_stiffness},
                    {"hinge_damping", scene.cloth.hinge_damping}};
   json["launch"] = word_for(launch_words, scene.launch);
+  json["reference"] = word_for(reference_words, scene.reference);
+  json["arrival"] = word_for(arrival_words, scene.arrival);
+  json["damping_ratio"] = scene.damping_ratio;
   json["target_length"] = word_for(target_length_words, scene.target_length);
   if (scene.time_step) json["time_step"] = *scene.time_step;
   json["frames_per_second"] = scene.frames_per_second;

@@ -26,6 +26,8 @@
 
 #include "chain_kernel.h"
 
+#include <nuno/shape_control.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cstring>
@@ -76,9 +78,16 @@ struct Elimination {
   T factor;
 };
 
-/// One step. `external(j, x, v)` is the force on particle j; returns the sum of the new positions.
-template <bool damped_hinges, typename T, typename External>
-HWY_INLINE Vec2<T> advance(const ChainPlan& plan, const ChainPlan::Kick& kick, Vec2<T>* x,
+/// Sums over the particles.
+template <typename T>
+struct Sums {
+  Vec2<T> position;
+  Vec2<T> velocity;  ///< only where control is damped
+};
+
+/// One step. `external(j, x, v)` is the force on particle j; returns the sums after the step.
+template <bool damped_hinges, bool damped_control, typename T, typename External>
+HWY_INLINE Sums<T> advance(const ChainPlan& plan, const ChainPlan::Kick& kick, Vec2<T>* x,
                            Vec2<T>* v, Elimination<T>* segments, External&& external) {
   const Index n = plan.particles;
   const double* rest_length = plan.rest_length.data();
@@ -151,7 +160,7 @@ HWY_INLINE Vec2<T> advance(const ChainPlan& plan, const ChainPlan::Kick& kick, V
     kicked2 = kicked1;
   }
 
-  Vec2<T> sum{zero, zero};
+  Sums<T> sums{{zero, zero}, {zero, zero}};
   Vec2<T> above{zero, zero};  // tension of the segment above, along it
   T tension = zero;
   for (Index i = n; i-- > 0;) {
@@ -163,30 +172,32 @@ HWY_INLINE Vec2<T> advance(const ChainPlan& plan, const ChainPlan::Kick& kick, V
     const Vec2<T> pull = above - below;
     v[i] = {scale_add(kick.force, pull.x, v[i].x), scale_add(kick.force, pull.y, v[i].y)};
     x[i] = {scale_add(plan.h, v[i].x, x[i].x), scale_add(plan.h, v[i].y, x[i].y)};
-    sum = sum + x[i];
+    sums.position = sums.position + x[i];
+    if constexpr (damped_control) sums.velocity = sums.velocity + v[i];
     above = below;
   }
-  return sum;
+  return sums;
 }
 
-template <typename T, typename External>
-HWY_INLINE Vec2<T> advance(const ChainPlan& plan, bool first, Vec2<T>* x, Vec2<T>* v,
+template <bool damped_control, typename T, typename External>
+HWY_INLINE Sums<T> advance(const ChainPlan& plan, bool first, Vec2<T>* x, Vec2<T>* v,
                            Elimination<T>* segments, External&& external) {
   const ChainPlan::Kick& kick = first ? plan.first : plan.full;
-  return plan.hinge_dashpot.empty() ? advance<false>(plan, kick, x, v, segments, external)
-                                    : advance<true>(plan, kick, x, v, segments, external);
+  return plan.hinge_dashpot.empty()
+             ? advance<false, damped_control>(plan, kick, x, v, segments, external)
+             : advance<true, damped_control>(plan, kick, x, v, segments, external);
 }
 
 void step_scalar(const ChainPlan& plan, bool first, const double* forces, double* positions,
                  double* velocities, ScalarScratch& scratch) {
   static_assert(sizeof(Vec2<Real>) == 2 * sizeof(double) &&
                 sizeof(Elimination<Real>) == 4 * sizeof(double));
-  advance(plan, first, reinterpret_cast<Vec2<Real>*>(positions),
-          reinterpret_cast<Vec2<Real>*>(velocities),
-          reinterpret_cast<Elimination<Real>*>(scratch.values.data()),
-          [forces](Index j, const Vec2<Real>&, const Vec2<Real>&) HWY_ATTR {
-            return Vec2<Real>{forces[2 * j], forces[2 * j + 1]};
-          });
+  advance<false>(plan, first, reinterpret_cast<Vec2<Real>*>(positions),
+                 reinterpret_cast<Vec2<Real>*>(velocities),
+                 reinterpret_cast<Elimination<Real>*>(scratch.values.data()),
+                 [forces](Index j, const Vec2<Real>&, const Vec2<Real>&) HWY_ATTR {
+                   return Vec2<Real>{forces[2 * j], forces[2 * j + 1]};
+                 });
 }
 
 // ---- a flight for as many gains as the number has lanes ---------------------------------------
@@ -214,7 +225,7 @@ HWY_INLINE Index lanes_of(Dual<T>) {
 /// Lanes of a coordinate: value to `finals`, slope to `tangents`, `stride` apart.
 template <typename T>
 HWY_INLINE void write_lanes(T number, double* finals, double*, Index stride, Index count) {
-  double values[HWY_MAX_BYTES / sizeof(double)];
+  double values[HWY_MAX_BYTES / sizeof(double)] = {};
   store_lanes(number, values);
   for (Index lane = 0; lane < count; ++lane) finals[lane * stride] = values[lane];
 }
@@ -225,34 +236,68 @@ HWY_INLINE void write_lanes(Dual<T> number, double* finals, double* tangents, In
   write_lanes(number.slope, tangents, nullptr, stride, count);
 }
 
+/// β = 2ζ·√(α·m), shape_damping of the core; its slope is β/2α.
+HWY_INLINE Real damping_number(const double* gains, double ratio, double mass, Real) {
+  return shape_damping(ratio, *gains, mass);
+}
+HWY_INLINE Pack damping_number(const double* gains, double ratio, double mass, Pack) {
+  double damping[HWY_MAX_BYTES / sizeof(double)] = {};
+  for (Index lane = 0; lane < lanes_of(Pack()); ++lane) {
+    damping[lane] = shape_damping(ratio, gains[lane], mass);
+  }
+  return load_lanes(damping, Pack());
+}
 template <typename T>
-void fly_lanes(const ChainPlan& plan, const double* initial, const double* launch_velocity,
-               const double* gains, Index count, double* finals, double* tangents) {
+HWY_INLINE Dual<T> damping_number(const double* gains, double ratio, double mass, Dual<T>) {
+  const T damping = damping_number(gains, ratio, mass, T());
+  const T gain = load_lanes(gains, T());
+  // At α = 0 the slope is infinite; there it is given as none.
+  const T slope = where_greater(gain, T(0.0), T(0.5) * damping / gain, T(0.0));
+  return {damping, slope};
+}
+
+template <bool damped_control, typename T>
+void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* initial,
+               const double* launch_velocity, const double* gains, Index count, double* finals,
+               double* tangents) {
   const Index n = plan.particles;
   const auto size = static_cast<std::size_t>(n);
   const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
   const std::unique_ptr<Elimination<T>[]> segments(new Elimination<T>[size]);
-  Vec2<T> sum{Constant<T>::of(0), Constant<T>::of(0)};
+  const T zero = Constant<T>::of(0);
+  Sums<T> sums{{zero, zero}, {zero, zero}};
   for (Index i = n; i-- > 0;) {
     x[i] = {Constant<T>::of(initial[2 * i]), Constant<T>::of(initial[2 * i + 1])};
     v[i] = {Constant<T>::of(launch_velocity[2 * i]), Constant<T>::of(launch_velocity[2 * i + 1])};
-    sum = sum + x[i];
+    sums.position = sums.position + x[i];
+    sums.velocity = sums.velocity + v[i];
   }
 
-  double padded[HWY_MAX_BYTES / sizeof(double)];
-  for (Index lane = 0; lane < lanes_of(T()); ++lane)
+  double padded[HWY_MAX_BYTES / sizeof(double)] = {};
+  for (Index lane = 0; lane < lanes_of(T()); ++lane) {
     padded[lane] = gains[std::min(lane, count - 1)];
+  }
   const T gain = gain_number(padded, T());
+  const T damping = damping_number(padded, plan.damping_ratio, plan.particle_mass, T());
   const T particles = Constant<T>::of(static_cast<double>(n));
-  const double* target = plan.target_shape.data();
   for (Index step = 0; step < plan.steps; ++step) {
-    const Vec2<T> center{divide(sum.x, particles), divide(sum.y, particles)};
-    sum = advance(plan, step == 0, x.get(), v.get(), segments.get(),
-                  [&](Index j, const Vec2<T>& position, const Vec2<T>&) HWY_ATTR {
-                    return Vec2<T>{gain * shift(target[2 * j], center.x - position.x),
-                                   gain * shift(target[2 * j + 1], center.y - position.y)};
-                  });
+    const double* shape = reference.shape().data();
+    const double* motion = reference.velocity().data();
+    const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
+    const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
+    sums = advance<damped_control>(
+        plan, step == 0, x.get(), v.get(), segments.get(),
+        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) HWY_ATTR {
+          Vec2<T> force{gain * shift(shape[2 * j], center.x - position.x),
+                        gain * shift(shape[2 * j + 1], center.y - position.y)};
+          if constexpr (damped_control) {
+            force = force + Vec2<T>{damping * shift(motion[2 * j], drift.x - velocity.x),
+                                    damping * shift(motion[2 * j + 1], drift.y - velocity.y)};
+          }
+          return force;
+        });
+    reference.advance();
   }
   for (Index i = 0; i < n; ++i) {
     write_lanes(x[i].x, finals + 2 * i, tangents + 2 * i, 2 * n, count);
@@ -260,19 +305,29 @@ void fly_lanes(const ChainPlan& plan, const double* initial, const double* launc
   }
 }
 
-void fly_all(const ChainPlan& plan, const double* initial, const double* launch_velocity,
-             const double* gains, Index count, double* finals, double* tangents) {
+template <typename T>
+void fly_lanes(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+               const double* launch_velocity, const double* gains, Index count, double* finals,
+               double* tangents) {
+  const auto flight = plan.damping_ratio > 0 ? fly_lanes<true, T> : fly_lanes<false, T>;
+  flight(plan, reference, initial, launch_velocity, gains, count, finals, tangents);
+}
+
+void fly_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+             const double* launch_velocity, const double* gains, Index count, double* finals,
+             double* tangents) {
   const Index wide = lanes_of(Pack());
   for (Index first = 0; first < count; first += wide) {
     const Index here = std::min(wide, count - first);
     double* out = finals + first * 2 * plan.particles;
     double* out_tangents = tangents == nullptr ? nullptr : tangents + first * 2 * plan.particles;
     if (tangents != nullptr) {
-      fly_lanes<Dual<Pack>>(plan, initial, launch_velocity, gains + first, here, out, out_tangents);
+      fly_lanes<Dual<Pack>>(plan, reference, initial, launch_velocity, gains + first, here, out,
+                            out_tangents);
     } else if (here == 1) {
-      fly_lanes<Real>(plan, initial, launch_velocity, gains + first, here, out, nullptr);
+      fly_lanes<Real>(plan, reference, initial, launch_velocity, gains + first, here, out, nullptr);
     } else {
-      fly_lanes<Pack>(plan, initial, launch_velocity, gains + first, here, out, nullptr);
+      fly_lanes<Pack>(plan, reference, initial, launch_velocity, gains + first, here, out, nullptr);
     }
   }
 }
@@ -297,11 +352,12 @@ void step(const ChainPlan& plan, bool first, const double* forces, double* posit
   HWY_DYNAMIC_DISPATCH(step_scalar)(plan, first, forces, positions, velocities, scratch);
 }
 
-void fly(const ChainPlan& plan, const double* initial, const double* launch_velocity,
-         std::span<const double> gains, double* finals, double* tangents) {
+void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+         const double* launch_velocity, std::span<const double> gains, double* finals,
+         double* tangents) {
   HWY_DYNAMIC_DISPATCH(fly_all)
-  (plan, initial, launch_velocity, gains.data(), static_cast<Index>(gains.size()), finals,
-   tangents);
+  (plan, reference, initial, launch_velocity, gains.data(), static_cast<Index>(gains.size()),
+   finals, tangents);
 }
 
 Index lanes() { return HWY_DYNAMIC_DISPATCH(lanes)(); }

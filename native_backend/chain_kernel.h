@@ -1,6 +1,6 @@
 #pragma once
 
-#include <nuno/points.h>
+#include <nuno/reference_motion.h>
 
 #include <span>
 #include <string>
@@ -16,7 +16,8 @@ struct ChainPlan {
   std::vector<double> rest_length;    ///< ℓ [N − 1]
   std::vector<double> hinge_spring;   ///< EI/ℓ̄ of the hinge at each particle, 0 at the ends [N]
   std::vector<double> hinge_dashpot;  ///< ηI/ℓ̄ [N]; empty where the hinges have no damping
-  std::vector<double> target_shape;   ///< target about its centroid [2N]
+  double particle_mass = 0;           ///< m [kg]
+  double damping_ratio = 0;           ///< ζ of the control force
 
   /// One kick of the velocities: v' = keep·v − (0, fall) + force·(forces).
   struct Kick {
@@ -41,11 +42,12 @@ struct ScalarScratch {
 void step(const ChainPlan& plan, bool first, const double* forces, double* positions,
           double* velocities, ScalarScratch& scratch);
 
-/// One whole flight under shape control for each gain: final positions [2N] after another in
-/// `finals`, and their derivatives with respect to the gain in `tangents` unless that is null.
-/// Equal, bit for bit, to steps of `step` under shape_control.
-void fly(const ChainPlan& plan, const double* initial, const double* launch_velocity,
-         std::span<const double> gains, double* finals, double* tangents);
+/// One whole flight under shape control towards `reference` for each gain: final positions [2N]
+/// after another in `finals`, and their derivatives with respect to the gain in `tangents` unless
+/// that is null. Equal, bit for bit, to steps of `step` under shape_control.
+void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+         const double* launch_velocity, std::span<const double> gains, double* finals,
+         double* tangents);
 
 /// Gains that `fly` takes side by side, one a SIMD lane.
 Index lanes();

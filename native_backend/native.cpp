@@ -52,8 +52,8 @@ ChainPlan make_plan(const Problem& problem, Index steps) {
   };
   plan.hinge_spring = at_hinges(chain.cloth.hinge_stiffness);
   if (chain.cloth.hinge_damping > 0) plan.hinge_dashpot = at_hinges(chain.cloth.hinge_damping);
-  const Points shape = shape_of(problem.target);
-  plan.target_shape.assign(shape.data(), shape.data() + shape.size());
+  plan.particle_mass = chain.particle_mass;
+  plan.damping_ratio = problem.damping_ratio;
   plan.first = make_kick(chain, plan.h, plan.h / 2, 0.5);
   plan.full = make_kick(chain, plan.h, plan.h, 0.25);
   return plan;
@@ -142,8 +142,8 @@ class NativeBackend final : public Backend {
     const Index count = static_cast<Index>(gains.size());
     std::vector<double> finals(static_cast<std::size_t>(size * count));
     std::vector<double> tangents(with_slopes ? finals.size() : 0);
-    fly(plan_, problem().chain.initial.data(), velocities.data(), gains, finals.data(),
-        with_slopes ? tangents.data() : nullptr);
+    fly(plan_, ReferenceMotion(problem(), time_step()), problem().chain.initial.data(),
+        velocities.data(), gains, finals.data(), with_slopes ? tangents.data() : nullptr);
     for (Index lane = 0; lane < count; ++lane) {
       const Eigen::Map<const Points> final(finals.data() + lane * size, 2, target.cols());
       ErrorSample& sample = samples[static_cast<std::size_t>(lane)];

@@ -14,6 +14,8 @@ struct Engine {
   /// Rounding of a coordinate that moves over metres: 2⁻⁵³ or 2⁻²⁴, times what a thousand steps
   /// add.
   double rounding;
+  /// Solves its joints by sweeping over them, to a tolerance.
+  bool sweeps_joints;
 };
 
 inline std::unique_ptr<Backend> make_native(const Problem& problem,
@@ -29,11 +31,11 @@ std::unique_ptr<Backend> make_box2d(const Problem& problem, std::optional<double
   return box2d::make_backend(problem, options);
 }
 
-inline const Engine native_engine = {"native", make_native, 1e-11};
+inline const Engine native_engine = {"native", make_native, 1e-11, false};
 inline const Engine box2d_weld_engine = {"box2d_soft_weld", make_box2d<box2d::Hinge::soft_weld>,
-                                         1e-4};
+                                         1e-4, true};
 inline const Engine box2d_pair_engine = {"box2d_spring_pair", make_box2d<box2d::Hinge::spring_pair>,
-                                         1e-4};
+                                         1e-4, true};
 
 inline std::ostream& operator<<(std::ostream& out, const Engine& engine) {
   return out << engine.name;

@@ -23,7 +23,9 @@ Points ballistic_launch(const Points& from, const Points& to, double gravity,
 /// every segment of the chain `positions` unchanged. Keeps the total momentum.
 Points without_stretching(const Points& positions, const Points& velocities);
 
-/// The launch that the backend's problem asks for, arriving on the backend's own recurrence.
+/// The launch that the backend's problem asks for, arriving on the backend's own recurrence: each
+/// particle on its own ballistic path, or, where the reference moves, the shape along the reference
+/// and the centroid on its ballistic path; `inextensible` removes what stretches from either.
 Points launch(const Backend& backend);
 
 }  // namespace nuno

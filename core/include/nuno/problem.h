@@ -28,6 +28,9 @@ struct Problem {
   double target_scale = 1;  ///< what `fit` did to the drawn target
   double arrival_time = 0;  ///< t₀ [s]
   Launch launch = Launch::ballistic;
+  Reference reference = Reference::hold;
+  Arrival arrival = Arrival::pass;
+  double damping_ratio = 0;  ///< ζ of the control force
 };
 
 /// Throws InputError where a valid scene has no usable chain (a segment of no length).

@@ -23,6 +23,7 @@ struct Rollout {
   Points final;                     ///< positions at arrival [2 × N], m
   ArrivalError error;               ///< infinite where the rollout diverged
   double control_effort = 0;        ///< rms control force over particles and time / particle weight
+  double max_strain = 0;            ///< largest |l/ℓ − 1| of a segment on the way
   std::vector<double> frame_times;  ///< [s]
   std::vector<Points> frame_positions;  ///< [2 × N] each, m
   Index diverged_at_step = 0;           ///< the first step with a bad value

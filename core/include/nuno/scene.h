@@ -30,6 +30,18 @@ enum class Launch {
   inextensible  ///< those velocities, moved the least so that no segment changes its length
 };
 
+/// What the control force pulls towards.
+enum class Reference {
+  hold,  ///< the paper's: the target shape from the first step on (equation 3)
+  morph  ///< a motion from the initial shape to the target, see reference_motion.h
+};
+
+/// How a moving reference comes to the target.
+enum class Arrival {
+  pass,   ///< in full swing
+  settle  ///< with the shape at rest
+};
+
 /// What happens to a target whose drawn length is not the cloth's.
 enum class TargetLength {
   fit,      ///< scaled about its centroid until its segments sum to the cloth's length
@@ -46,6 +58,9 @@ struct Scene {
   Points target;             ///< drawn polyline [2 × any], at least 2 distinct points
   Cloth cloth;
   Launch launch = Launch::ballistic;
+  Reference reference = Reference::hold;
+  Arrival arrival = Arrival::pass;  ///< used by `morph`
+  double damping_ratio = 0;         ///< ζ of the control force, ≥ 0, see shape_control.h
   TargetLength target_length = TargetLength::fit;
   std::optional<double> time_step;  ///< [s], > 0; absent: the engine chooses
   double frames_per_second = 60;    ///< frames kept of a rollout [1/s], > 0

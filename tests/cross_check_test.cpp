@@ -1,0 +1,77 @@
+// The two engines against each other: the same launch, gain and optimiser, one end shape.
+
+#include <nuno/optimize.h>
+#include <nuno/rollout.h>
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "engines.h"
+#include "scene_library.h"
+
+namespace nuno {
+namespace {
+
+/// Mean gap of the end shapes of both engines at one gain, centroids aligned, over L.
+double shape_gap(const Problem& problem, double gain, std::optional<double> box2d_step) {
+  const Points native = rollout(*native::make_backend(problem), gain).final;
+  const Points box2d =
+      rollout(*box2d::make_backend(problem, {.time_step = box2d_step}), gain).final;
+  return shape_difference(native, box2d).mean / problem.chain.length;
+}
+
+Problem inextensible_s_curve() {
+  return make_problem(read_scene(NUNO_SCENES "/s-curve-32-inextensible.json"));
+}
+
+TEST(CrossCheck, BothEnginesEndInOneShapeAtTheBestGain) {
+  const Problem problem = inextensible_s_curve();
+  EXPECT_LT(shape_gap(problem, 0.0175, std::nullopt), 5e-4);
+}
+
+TEST(CrossCheck, TheGapShrinksWithTheStepOfBox2d) {
+  const Problem problem = inextensible_s_curve();
+  for (const double gain : {0.0, 0.0175, 0.05}) {
+    // Box2D is of first order: a fourth of the step, a fourth of the gap, as far as single
+    // precision and what strain the native cloth has (5e-5) let it show.
+    EXPECT_LT(shape_gap(problem, gain, 5e-4), 0.6 * shape_gap(problem, gain, 2e-3)) << gain;
+  }
+}
+
+TEST(CrossCheck, EachEngineFindsTheSameFirstValley) {
+  const Problem problem = inextensible_s_curve();
+  const auto native = native::make_backend(problem);
+  const auto box2d = box2d::make_backend(problem);
+  const OptimizeSummary a = steepest_descent(objective(*native));
+  const OptimizeSummary b = steepest_descent(objective(*box2d));
+  EXPECT_NEAR(a.gain, b.gain, 0.02 * a.gain);
+  EXPECT_NEAR(a.error, b.error, 1e-3 * problem.chain.length);
+}
+
+TEST(CrossCheck, TheOtherEnginesBestGainCostsLittle) {
+  const Problem problem = inextensible_s_curve();
+  const auto native = native::make_backend(problem);
+  const auto box2d = box2d::make_backend(problem);
+  const OptimizeSummary a = steepest_descent(objective(*native));
+  const OptimizeSummary b = steepest_descent(objective(*box2d));
+  EXPECT_LT(rollout(*native, b.gain).error.mean, 1.02 * a.error);
+  EXPECT_LT(rollout(*box2d, a.gain).error.mean, 1.02 * b.error);
+}
+
+TEST(CrossCheck, GlobalSearchIsNeverWorseThanSteepestDescent) {
+  for (const auto& entry : std::filesystem::directory_iterator(NUNO_SCENES)) {
+    Scene scene = read_scene(entry.path().string());
+    const Problem problem = make_problem(scene);
+    for (const bool box2d : {false, true}) {
+      if (box2d && problem.chain.particles() > 32) continue;  // for the test's time
+      const auto backend = box2d ? box2d::make_backend(problem) : native::make_backend(problem);
+      const Objective errors = objective(*backend);
+      EXPECT_LE(global_search(errors).error, steepest_descent(errors).error * (1 + 1e-9))
+          << scene.name << " on " << backend->name();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace nuno
