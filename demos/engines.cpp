@@ -5,6 +5,7 @@
 #include <nuno/box2d.h>
 #include <nuno/native.h>
 
+#include <algorithm>
 #include <cassert>
 
 namespace nuno {
@@ -84,14 +85,17 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
                                                double gain) {
   std::unique_ptr<Backend> backend = make_backend(name, file);
+  // The largest gain goes with 1/h², and an engine may choose shorter steps than it is asked for.
+  double steps = 0;
   while (gain > backend->largest_gain()) {
-    if (too_long(2 * static_cast<double>(backend->steps()), file)) {
+    steps = 2 * std::max(steps, static_cast<double>(backend->steps()));
+    if (too_long(steps, file)) {
       throw InputError(
           fmt::format("--alpha: {} is not <= {:.4g}, the largest gain that {} steps "
                       "on {} resolve; more would take too long",
                       gain, backend->largest_gain(), backend->steps(), name));
     }
-    backend = make_backend(name, file, backend->time_step() / 2);
+    backend = make_backend(name, file, file.problem.arrival_time / steps);
   }
   return backend;
 }

@@ -7,10 +7,14 @@
 
 #include <nuno/scene.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <csignal>
 #include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
 
 #include "commands.h"
 #include "engines.h"
