@@ -46,6 +46,7 @@ b2Vec2 narrow(const Vector2d& v) { return {narrow(v.x()), narrow(v.y())}; }
 Vector2d widen(const b2Vec2& v) { return {static_cast<double>(v.x), static_cast<double>(v.y)}; }
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+Vector2d cross(double w, const Vector2d& r) { return {-w * r.y(), w * r.x()}; }
 
 /// A pose or velocity for every rod [3 × rods]: its centre of mass and its angle.
 using Motions = Eigen::Matrix3Xd;
@@ -89,8 +90,7 @@ Rod make_rod(double length, bool first, bool last) {
 // for k = EI/(2·ℓ̄·d²) and (a/d)² = 4/3. At tan φ = a/d (θ = 98°) it is 1.6 % too small and the
 // inner spring has no length left. Dashpots ηI/(2·ℓ̄·d²) give (ηI/ℓ̄)·θ̇·(1 + sin²φ/3).
 struct HingeSpring {
-  double initial_angle = 0;  // θ
-  double stiffness = 0;      // of the weld or of each spring of the pair
+  double stiffness = 0;  // of the weld or of each spring of the pair
   double damping = 0;
   double along = 0;  // a
   double aside = 0;  // d
@@ -105,14 +105,18 @@ struct HingeSpring {
 //     v  = s·u + q·a + J·λ         u: mean velocity over the last step
 //     u' = s·(v + q·a + J·λ̄)       (the first step starts at v₀, not half a step before: u' = v)
 //     x' = x + h·u'
-// s = e^(−κh/2) and q = sinh(κh/2)/κ make drag and a constant force exact. λ̄ ← λ̄ + w·(λ − λ̄):
-// RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the joints forbid; over a
-// step this multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
+// s = e^(−κh/2) and q = sinh(κh/2)/κ make drag and a constant force exact. s is not left to Box2D's
+// damping: 1 − s has only three digits in single precision, for a drag of 1e-4 per step. λ̄ ← λ̄ +
+// w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the joints
+// forbid; over a step this multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
 //
 // Box2D's position solver closes what stays open of the joints, of third order in h, and does so
 // at x + h·v: so it is handed poses that lead by the last step's h·(u' − v), and its corrections
-// are taken over. They leave the centroid alone; what rounding makes of that is taken out, and
-// poses are kept in double precision about the centroid: the flight is long, the cloth small.
+// are taken over.
+//
+// The flight is long and the cloth small: so poses and velocities are kept in double precision,
+// poses about the centroid. Neither joints nor corrections move the centroid; what Box2D's rounding
+// makes of that (1e-8 of a velocity, but the same way for a thousand steps) is taken out.
 struct Plan {
   double h = 0;            // [s]
   double unit_length = 0;  // [m]
@@ -122,11 +126,9 @@ struct Plan {
   int position_iterations = 0;
   std::vector<Rod> rods;
   std::vector<HingeSpring> hinges;
-  double half_kick = 0;       // q
-  float damping = 0;          // Box2D multiplies velocities by s = 1/(1 + damping),
-  double keep = 0;            // this is s as it rounds it,
-  double kick_per_force = 0;  // and after kicks: so q/s
-  float gravity = 0;
+  double keep = 1;         // s
+  double half_kick = 0.5;  // q
+  double gravity = 0;
 };
 
 constexpr double impulse_weight = 0.75;  // w
@@ -147,10 +149,7 @@ Plan make_plan(const Problem& problem, const Options& options, Index steps) {
   }
   const double unit_moment = plan.unit_force * plan.unit_length;
   for (Index i = 0; i + 1 < rods; ++i) {
-    const Vector2d before = chain.initial.col(i + 1) - chain.initial.col(i);
-    const Vector2d after = chain.initial.col(i + 2) - chain.initial.col(i + 1);
     HingeSpring hinge;
-    hinge.initial_angle = std::atan2(cross(before, after), before.dot(after));
     hinge.stiffness = chain.cloth.hinge_stiffness / chain.hinge_length[i] / unit_moment;
     hinge.damping = chain.cloth.hinge_damping / chain.hinge_length[i] / (unit_moment * plan.h);
     if (options.hinge == Hinge::spring_pair) {
@@ -164,10 +163,8 @@ Plan make_plan(const Problem& problem, const Options& options, Index steps) {
 
   const double z = chain.drag_rate() * plan.h;
   plan.half_kick = z > 0 ? std::sinh(z / 2) / z : 0.5;
-  plan.damping = narrow(std::expm1(z / 2));
-  plan.keep = static_cast<double>(1.0f / (1.0f + plan.damping));
-  plan.kick_per_force = plan.half_kick / plan.keep;
-  plan.gravity = narrow(plan.kick_per_force * chain.gravity * plan.h * plan.h / plan.unit_length);
+  plan.keep = std::exp(-z / 2);
+  plan.gravity = chain.gravity * plan.h * plan.h / plan.unit_length;
   return plan;
 }
 
@@ -181,7 +178,6 @@ class ChainSimulation final : public Simulation {
         velocity_(3, rods()),
         lead_(Motions::Zero(3, rods())),
         handed_pose_(3, rods()),
-        handed_velocity_(3, rods()),
         mean_impulse_(2, rods() - 1),
         left_(2, rods()),
         right_(2, rods()),
@@ -189,11 +185,13 @@ class ChainSimulation final : public Simulation {
         velocities_(velocities) {
     const Points x = (positions.colwise() - center_) / plan.unit_length;
     const Points u = without_stretching(positions, velocities) * (plan.h / plan.unit_length);
+    Vector2d before(1, 0);
     for (Index i = 0; i < rods(); ++i) {
       const Vector2d along = (x.col(i + 1) - x.col(i)) / rod(i).length;
       const Vector2d spread = (u.col(i + 1) - u.col(i)) / rod(i).length;
-      const double angle = i == 0 ? std::atan2(along.y(), along.x())
-                                  : pose_(2, i - 1) + plan.hinges[index(i - 1)].initial_angle;
+      const double angle =
+          (i == 0 ? 0 : pose_(2, i - 1)) + std::atan2(cross(before, along), before.dot(along));
+      before = along;
       pose_.col(i) << x.col(i) - rod(i).left * along, angle;
       velocity_.col(i) << u.col(i) - rod(i).left * spread, cross(along, spread);
     }
@@ -210,7 +208,7 @@ class ChainSimulation final : public Simulation {
     if (!apply(forces)) return give_up();
     hand_over();
     world_.Step(1, plan_.velocity_iterations, plan_.position_iterations);
-    if (!take_over() || !turn_within_range()) return give_up();
+    if (!take_over(forces) || !turn_within_range()) return give_up();
     read();
   }
 
@@ -225,14 +223,13 @@ class ChainSimulation final : public Simulation {
   // Box2D solves joints from the last body of the chain to the first, and at a hinge the joint
   // that was made last comes first: springs, then the revolute joint.
   void build_world() {
-    world_.SetGravity({0, -plan_.gravity});
+    world_.SetGravity({0, narrow(-plan_.half_kick * plan_.gravity)});
     world_.SetAllowSleeping(false);
     world_.SetContinuousPhysics(false);
     for (Index i = 0; i < rods(); ++i) {
       b2BodyDef def;
       def.type = b2_dynamicBody;
       def.allowSleep = false;
-      def.linearDamping = def.angularDamping = plan_.damping;
       b2Body* body = world_.CreateBody(&def);
       b2MassData mass;
       mass.mass = narrow(rod(i).mass);
@@ -290,8 +287,10 @@ class ChainSimulation final : public Simulation {
     return revolute;
   }
 
+  double force_scale() const { return plan_.half_kick / plan_.unit_force; }
+
   bool apply(const Points& forces) {
-    const double scale = plan_.kick_per_force / plan_.unit_force;
+    const double scale = force_scale();
     if (!((scale * forces).cwiseAbs().maxCoeff() < largest_force)) return false;
     if (!forces.allFinite()) return false;  // the maximum may have passed over a NaN
     for (Index i = 0; i < rods(); ++i) {
@@ -305,31 +304,35 @@ class ChainSimulation final : public Simulation {
   }
 
   void hand_over() {
-    handed_pose_ = (pose_ + lead_).cast<float>().cast<double>();
-    handed_velocity_ = velocity_.cast<float>().cast<double>();
+    handed_pose_ = (pose_ + lead_).cast<float>();
     for (Index i = 0; i < rods(); ++i) {
       b2Body& body = *bodies_[index(i)];
-      body.SetTransform(narrow(handed_pose_.col(i).head<2>()), narrow(handed_pose_(2, i)));
-      body.SetLinearVelocity(narrow(handed_velocity_.col(i).head<2>()));
-      body.SetAngularVelocity(narrow(handed_velocity_(2, i)));
+      body.SetTransform({handed_pose_(0, i), handed_pose_(1, i)}, handed_pose_(2, i));
+      body.SetLinearVelocity(narrow(plan_.keep * velocity_.col(i).head<2>()));
+      body.SetAngularVelocity(narrow(plan_.keep * velocity_(2, i)));
     }
   }
 
-  bool take_over() {
+  bool take_over(const Points& forces) {
     Motions solved(3, rods());      // v
-    Motions correction(3, rods());  // of the position solver
+    Motions correction(3, rods());  // of the position solver, after x + h·v as Box2D rounds it
     for (Index i = 0; i < rods(); ++i) {
-      const b2Body& body = *bodies_[index(i)];
-      solved.col(i) << widen(body.GetLinearVelocity()),
-          static_cast<double>(body.GetAngularVelocity());
-      correction.col(i) << widen(body.GetPosition()), static_cast<double>(body.GetAngle());
+      const b2Vec2& v = bodies_[index(i)]->GetLinearVelocity();
+      const Eigen::Vector3f motion(v.x, v.y, bodies_[index(i)]->GetAngularVelocity());
+      const b2Vec2& x = bodies_[index(i)]->GetPosition();
+      const Eigen::Vector3f pose(x.x, x.y, bodies_[index(i)]->GetAngle());
+      const Eigen::Vector3f moved = handed_pose_.col(i) + motion;
+      solved.col(i) = motion.cast<double>();
+      correction.col(i) = (pose - moved).cast<double>();
     }
     if (!within_limits(solved)) return false;
-    correction -= handed_pose_ + solved;
     correction.topRows<2>().colwise() -= mass_center(correction);
+    Vector2d kick = force_scale() * forces.rowwise().mean();
+    kick.y() -= plan_.half_kick * plan_.gravity;
+    const Vector2d expected = plan_.keep * mass_center(velocity_) + kick;
+    solved.topRows<2>().colwise() += (expected - mass_center(solved)).eval();
 
-    velocity_ = solved;  // to become u'
-    if (!first_) velocity_ += solved - plan_.keep * handed_velocity_;
+    velocity_ = first_ ? solved : Motions(2 * solved - plan_.keep * velocity_);  // to become u'
     for (Index i = 0; i + 1 < rods(); ++i) {
       const Vector2d impulse = widen(joints_[index(i)]->GetReactionForce(1));
       if (first_) {
@@ -390,8 +393,9 @@ class ChainSimulation final : public Simulation {
     }
   }
 
-  // A particle is where the mean of its halves is; its velocity leaves out what the position
-  // solver did to the rods' centres, which is rounding for the most part.
+  // A particle is where the mean of its halves is. An end turns by ω from r to r' within a step, a
+  // chord of 2·tan(ω/2)·(r + r')/2 turned by a right angle; differences of positions would say the
+  // same with the roundings of two poses, over h.
   void read() {
     const Matrix2Xd left_before = left_;
     const Matrix2Xd right_before = right_;
@@ -403,10 +407,11 @@ class ChainSimulation final : public Simulation {
       const double right = rod(i).right_share;
       const auto x = pose_.col(i).head<2>();
       const auto u = velocity_.col(i).head<2>();
+      const double turn = std::tan(velocity_(2, i) / 2);
       positions_.col(i) += left * (x + left_.col(i));
       positions_.col(i + 1) += right * (x + right_.col(i));
-      velocities_.col(i) += left * (u + left_.col(i) - left_before.col(i));
-      velocities_.col(i + 1) += right * (u + right_.col(i) - right_before.col(i));
+      velocities_.col(i) += left * (u + cross(turn, left_.col(i) + left_before.col(i)));
+      velocities_.col(i + 1) += right * (u + cross(turn, right_.col(i) + right_before.col(i)));
     }
     positions_ = (plan_.unit_length * positions_).colwise() + center_;
     velocities_ *= plan_.unit_length / plan_.h;
@@ -431,9 +436,9 @@ class ChainSimulation final : public Simulation {
   Motions pose_;                  // x
   Motions velocity_;              // u
   Motions lead_;
-  Motions handed_pose_, handed_velocity_;  // as Box2D rounds them
-  Matrix2Xd mean_impulse_;                 // λ̄ of every hinge
-  Matrix2Xd left_, right_;                 // the rods' ends from their centres
+  Eigen::Matrix3Xf handed_pose_;
+  Matrix2Xd mean_impulse_;  // λ̄ of every hinge
+  Matrix2Xd left_, right_;  // the rods' ends from their centres
   Points positions_, velocities_;
   bool alive_ = true;
   bool first_ = true;
@@ -452,19 +457,20 @@ class ChainBackend final : public Backend {
     return 0.04 * problem().chain.particle_mass / (h * h);
   }
 
-  // Without forces inside, v = s·u − q·g and u' = s·(v − q·g), with Box2D's roundings of s and q.
+  // v = s·u − q·g and u' = s·(v − q·g).
   DragRecurrence drag_recurrence() const override {
-    const double g = problem().chain.gravity;
     const double s = plan_.keep;
-    const double q =
-        g > 0 ? s * static_cast<double>(plan_.gravity) * plan_.unit_length / (plan_.h * g)
-              : plan_.half_kick * plan_.h;
+    const double q = plan_.half_kick * plan_.h;
     return {plan_.h, s, q, s * s, 2 * s * q};
   }
 
-  std::unique_ptr<Simulation> start(const Points& velocities) const override {
-    return std::make_unique<ChainSimulation>(plan_, problem().chain.initial, velocities);
+  std::unique_ptr<Simulation> start(const Points& positions,
+                                    const Points& velocities) const override {
+    return std::make_unique<ChainSimulation>(plan_, positions, velocities);
   }
+
+  // A hundred times the rounding that a flight collects in single precision.
+  double smallest_disturbance() const override { return 1e-4; }
 
  private:
   Plan plan_;
@@ -488,6 +494,9 @@ StepLimit hinge_limit(const Chain& chain) {
       16 / (chain.hinge_length.minCoeff() * shortest * shortest * chain.particle_mass);
   const double squared_frequency = per_hinge * chain.cloth.hinge_stiffness;
   const double rate = per_hinge * chain.cloth.hinge_damping;
+  if (chain.cloth.hinge_stiffness == 0 && chain.cloth.hinge_damping == 0) {
+    return {std::numeric_limits<double>::infinity(), "", 0};
+  }
   const double h = limit / (rate + std::sqrt(rate * rate + limit * squared_frequency));
   if (rate * rate > squared_frequency)
     return {h, "/cloth/hinge_damping", chain.cloth.hinge_damping};

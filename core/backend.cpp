@@ -9,12 +9,12 @@
 
 namespace nuno {
 
-std::vector<double> Backend::errors(std::span<const double> gains) const {
+std::vector<double> Backend::errors(std::span<const double> gains, const Points& initial) const {
   std::vector<double> result(gains.size());
   std::atomic<std::size_t> next = 0;
   const auto work = [&] {
     for (std::size_t i; (i = next++) < gains.size();)
-      result[i] = rollout(*this, gains[i]).error.mean;
+      result[i] = rollout(*this, gains[i], {}, initial).error.mean;
   };
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::jthread> threads;

@@ -63,6 +63,11 @@ double effort_unit(const Problem& problem) {
 }
 
 Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options) {
+  return rollout(backend, gain, options, backend.problem().chain.initial);
+}
+
+Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options,
+                const Points& initial) {
   assert(gain >= 0);
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
@@ -72,7 +77,7 @@ Rollout rollout(const Backend& backend, double gain, const RolloutOptions& optio
   Rollout result;
   result.gain = gain;
   result.launch_velocity = launch(backend);
-  const std::unique_ptr<Simulation> cloth = backend.start(result.launch_velocity);
+  const std::unique_ptr<Simulation> cloth = backend.start(initial, result.launch_velocity);
   Recorder recorder(options.frames_per_second, problem.arrival_time, result);
   if (options.frames_per_second > 0) recorder.keep(0, cloth->positions());
 
@@ -116,6 +121,37 @@ Rollout rollout(const Backend& backend, double gain, const RolloutOptions& optio
     result.control_effort = infinity;
   }
   return result;
+}
+
+Points disturbed(const Chain& chain, double size, unsigned seed) {
+  const Points& x = chain.initial;
+  // Turns of sin(i²)-like phases: every wavelength has its share, and no random generator is
+  // needed.
+  const auto turned = [&](double amplitude) {
+    Points result(2, x.cols());
+    result.col(0).setZero();
+    for (Index i = 0; i + 1 < x.cols(); ++i) {
+      const double k = static_cast<double>(i + 1) + 0.37 * static_cast<double>(seed);
+      const double turn = amplitude * std::sin(1.7 * k + 0.61803 * k * k);
+      const double c = std::cos(turn), s = std::sin(turn);
+      const Eigen::Vector2d span = x.col(i + 1) - x.col(i);
+      result.col(i + 1) =
+          result.col(i) + Eigen::Vector2d(c * span.x() - s * span.y(), s * span.x() + c * span.y());
+    }
+    return Points(shape_of(result).colwise() + centroid(x));
+  };
+  const double probe = arrival_error(turned(1e-3), x).mean / chain.length;
+  return turned(1e-3 * size / probe);
+}
+
+double sensitivity(const Backend& backend, const Rollout& flight) {
+  const Chain& chain = backend.problem().chain;
+  const Points initial = disturbed(chain, backend.smallest_disturbance());
+  const Rollout twin = rollout(backend, flight.gain, {}, initial);
+  if (flight.status == RolloutStatus::diverged || twin.status == RolloutStatus::diverged) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return arrival_error(twin.final, flight.final).mean / arrival_error(initial, chain.initial).mean;
 }
 
 }  // namespace nuno

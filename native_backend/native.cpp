@@ -99,23 +99,31 @@ class NativeBackend final : public Backend {
             kick_duration(rate, h)};
   }
 
-  std::unique_ptr<Simulation> start(const Points& velocities) const override {
-    return std::make_unique<ChainSimulation>(plan_, problem().chain.initial, velocities);
+  std::unique_ptr<Simulation> start(const Points& positions,
+                                    const Points& velocities) const override {
+    return std::make_unique<ChainSimulation>(plan_, positions, velocities);
   }
 
-  std::vector<double> errors(std::span<const double> gains) const override {
+  // A millionth of it is the rounding of a flight (1e-14).
+  double smallest_disturbance() const override { return 1e-8; }
+
+  using Backend::errors;
+  std::vector<double> errors(std::span<const double> gains, const Points& initial) const override {
     std::vector<double> result;
-    for (const ErrorSample& sample : fly_over(gains, false)) result.push_back(sample.error);
+    for (const ErrorSample& sample : fly_over(gains, initial, false)) {
+      result.push_back(sample.error);
+    }
     return result;
   }
 
   bool has_slopes() const override { return true; }
   std::vector<ErrorSample> error_samples(std::span<const double> gains) const override {
-    return fly_over(gains, true);
+    return fly_over(gains, problem().chain.initial, true);
   }
 
  private:
-  std::vector<ErrorSample> fly_over(std::span<const double> gains, bool with_slopes) const {
+  std::vector<ErrorSample> fly_over(std::span<const double> gains, const Points& initial,
+                                    bool with_slopes) const {
     const Points velocities = launch(*this);
     std::vector<ErrorSample> samples(gains.size());
     const auto batch = static_cast<std::size_t>(lanes());
@@ -123,7 +131,8 @@ class NativeBackend final : public Backend {
     const auto work = [&] {
       for (std::size_t first; (first = next.fetch_add(batch)) < gains.size();) {
         const auto here = gains.subspan(first, std::min(batch, gains.size() - first));
-        fly_batch(here, velocities, with_slopes, std::span(samples).subspan(first, here.size()));
+        fly_batch(here, initial, velocities, with_slopes,
+                  std::span(samples).subspan(first, here.size()));
       }
     };
     const std::size_t batches = (gains.size() + batch - 1) / batch;
@@ -135,15 +144,15 @@ class NativeBackend final : public Backend {
     return samples;
   }
 
-  void fly_batch(std::span<const double> gains, const Points& velocities, bool with_slopes,
-                 std::span<ErrorSample> samples) const {
+  void fly_batch(std::span<const double> gains, const Points& initial, const Points& velocities,
+                 bool with_slopes, std::span<ErrorSample> samples) const {
     const Points& target = problem().target;
     const Index size = target.size();
     const Index count = static_cast<Index>(gains.size());
     std::vector<double> finals(static_cast<std::size_t>(size * count));
     std::vector<double> tangents(with_slopes ? finals.size() : 0);
-    fly(plan_, ReferenceMotion(problem(), time_step()), problem().chain.initial.data(),
-        velocities.data(), gains, finals.data(), with_slopes ? tangents.data() : nullptr);
+    fly(plan_, ReferenceMotion(problem(), time_step()), initial.data(), velocities.data(), gains,
+        finals.data(), with_slopes ? tangents.data() : nullptr);
     for (Index lane = 0; lane < count; ++lane) {
       const Eigen::Map<const Points> final(finals.data() + lane * size, 2, target.cols());
       ErrorSample& sample = samples[static_cast<std::size_t>(lane)];

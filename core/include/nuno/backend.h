@@ -52,11 +52,25 @@ class Backend {
   virtual double largest_gain() const = 0;
   virtual DragRecurrence drag_recurrence() const = 0;
 
-  /// A cloth at its initial positions with these velocities [2 × N], m/s.
-  virtual std::unique_ptr<Simulation> start(const Points& velocities) const = 0;
+  /// A cloth at these positions with these velocities [2 × N], m and m/s. Its segments are at rest
+  /// at the lengths of the problem's chain.
+  virtual std::unique_ptr<Simulation> start(const Points& positions,
+                                            const Points& velocities) const = 0;
 
-  /// E(α) at many gains, as `rollout` gives it; by default a rollout each, over all cores.
-  virtual std::vector<double> errors(std::span<const double> gains) const;
+  std::unique_ptr<Simulation> start(const Points& velocities) const {
+    return start(problem_.chain.initial, velocities);
+  }
+
+  /// The smallest disturbance of the initial positions, over L, whose growth the engine's
+  /// arithmetic lets one measure.
+  virtual double smallest_disturbance() const = 0;
+
+  /// E(α) at many gains, as `rollout` gives it, from these positions [2 × N]; by default a rollout
+  /// each, over all cores.
+  virtual std::vector<double> errors(std::span<const double> gains, const Points& initial) const;
+  std::vector<double> errors(std::span<const double> gains) const {
+    return errors(gains, problem_.chain.initial);
+  }
 
   /// Whether `error_samples` is there: an engine that knows dE/dα.
   virtual bool has_slopes() const { return false; }

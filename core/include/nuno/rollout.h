@@ -33,6 +33,21 @@ struct Rollout {
 /// Launch, then {shape control, step} until arrival. `gain` α ≥ 0 [N/m]; 0 is launch only.
 Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options = {});
 
+/// The same launch from other positions [2 × N], m.
+Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options,
+                const Points& initial);
+
+/// The chain's initial positions with every segment turned a little, by a pattern that has all
+/// wavelengths: the particles move by `size`·L on average, no segment changes its length, and the
+/// centroid stays. Different `seed`s give different patterns.
+Points disturbed(const Chain& chain, double size, unsigned seed = 0);
+
+/// How much a small disturbance at the start has grown by arrival: mean displacement at the end
+/// over mean displacement at the start, of `flight` against a twin from disturbed positions. A
+/// flight above 10 is fragile: engines, steps and machines need not agree on it. Saturates where
+/// the twins have nothing in common any more.
+double sensitivity(const Backend& backend, const Rollout& flight);
+
 /// The force that control effort is measured in [N]: a particle's weight m·g, or m·L/t₀² without
 /// gravity.
 double effort_unit(const Problem& problem);
