@@ -246,11 +246,12 @@ class ChainSimulation final : public Simulation {
   // it out; ε, since c = −k means a rigid joint to Box2D. Half a kick, so half the spring: q·k.
   b2Joint* join(std::size_t i) {
     constexpr double epsilon = 1.0 / 1024;
-    constexpr double least_stiffness = 1e-20;  // its reciprocal is far from overflow
+    constexpr double nothing = 1e-20;  // no moment to speak of, and its reciprocal is finite
     const HingeSpring& hinge = plan_.hinges[i];
-    const double k = plan_.half_kick * std::max(hinge.stiffness, 1e-6 * hinge.damping);
+    const bool has_spring = std::max(hinge.stiffness, hinge.damping) > nothing;
+    // A joint of no stiffness would be rigid: a lone dashpot gets a spring for form's sake.
+    const double k = plan_.half_kick * std::max(hinge.stiffness, nothing);
     const double c = plan_.half_kick * hinge.damping - (1 - epsilon) * k;
-    const bool has_spring = k > least_stiffness;
     const double end = plan_.rods[i].right;
     const double start = plan_.rods[i + 1].left;
 
