@@ -126,19 +126,109 @@ OptimizeSummary steepest_descent(const Objective& objective,
   return summary;
 }
 
-OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options) {
-  const auto start = Clock::now();
-  Counter counter(objective);
-  OptimizeSummary summary;
+namespace {
 
+/// The gains of a scan: 0, then log-spaced from the smallest to the largest that make sense.
+std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOptions& options) {
   const double first = options.smallest_gain * objective.gain_scale;
   const double last = std::max(
       2 * first, std::min(options.largest_gain * objective.gain_scale, objective.largest_gain));
   std::vector<double> gains = {0};
-  for (Index i = 0; i < options.scan; ++i) {
+  for (Index i = 0; i + 1 < options.scan; ++i) {
     gains.push_back(first * std::pow(last / first, static_cast<double>(i) /
-                                                       static_cast<double>(options.scan - 1)));
+                                                       static_cast<double>(options.scan - 2)));
   }
+  return gains;
+}
+
+// ---- refinement where the objective knows its slope: all valleys at once, a batch a round
+// --------
+
+/// E and its slope at a point of the logarithmic axis u = log α.
+struct Knot {
+  double u = 0;
+  double error = 0;
+  double slope = 0;  // dE/du
+};
+
+struct Bracket {
+  Knot left, right;
+
+  /// Where the cubic through both ends and their slopes is least, kept off the ends, and how much
+  /// it is there.
+  Evaluation cubic_minimum() const {
+    const double width = right.u - left.u;
+    const double chord = (right.error - left.error) / width;
+    // E(left + w·s) = E₀ + w·(m₀·s + (3c − 2m₀ − m₁)·s² + (m₀ + m₁ − 2c)·s³), m the slopes, c the
+    // chord
+    const double quadratic = 3 * chord - 2 * left.slope - right.slope;
+    const double cubic = left.slope + right.slope - 2 * chord;
+    const double root = quadratic * quadratic - 3 * cubic * left.slope;
+    double s = left.error < right.error ? 0 : 1;
+    if (root >= 0) {
+      // The root with positive curvature, in the form that does not cancel.
+      const double q = quadratic + std::copysign(std::sqrt(root), quadratic);
+      const double candidate = quadratic >= 0 ? -left.slope / q : -q / (3 * cubic);
+      if (candidate > 0 && candidate < 1) s = candidate;
+    }
+    s = std::clamp(s, 0.02, 0.98);
+    return {left.u + width * s,
+            left.error + width * s * (left.slope + s * (quadratic + s * cubic))};
+  }
+};
+
+void search_with_slopes(const Objective& objective, const GlobalSearchOptions& options,
+                        OptimizeSummary& summary) {
+  const auto sample = [&](std::span<const double> gains) {
+    const std::vector<ErrorSample> samples = objective.samples(gains);
+    summary.evaluations += static_cast<Index>(gains.size());
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+      summary.history.push_back({gains[i], samples[i].error});
+    }
+    return samples;
+  };
+  const auto knot = [](double gain, const ErrorSample& at) {
+    return Knot{std::log(gain), at.error, at.slope * gain};
+  };
+
+  const std::vector<double> gains = scan_gains(objective, options);
+  const std::vector<ErrorSample> samples = sample(gains);
+  std::vector<Bracket> brackets;
+  for (std::size_t i = 1; i + 1 < gains.size(); ++i) {
+    const Bracket bracket{knot(gains[i], samples[i]), knot(gains[i + 1], samples[i + 1])};
+    if (std::isfinite(bracket.left.error) && std::isfinite(bracket.right.error)) {
+      brackets.push_back(bracket);
+    }
+  }
+  // Every round goes on in the valleys that now promise to be the deepest: a promise that an
+  // evaluation breaks costs a bracket its place.
+  for (Index round = 0; round < options.rounds; ++round) {
+    std::erase_if(brackets, [&](const Bracket& b) {
+      return b.right.u - b.left.u < options.gain_tolerance || !std::isfinite(b.left.error) ||
+             !std::isfinite(b.right.error);
+    });
+    std::ranges::sort(brackets, {}, [](const Bracket& b) { return b.cubic_minimum().error; });
+    const std::size_t refined =
+        std::min(brackets.size(), static_cast<std::size_t>(options.brackets));
+    if (refined == 0) break;
+    std::vector<double> candidates;
+    for (std::size_t i = 0; i < refined; ++i) {
+      candidates.push_back(std::exp(brackets[i].cubic_minimum().gain));
+    }
+    const std::vector<ErrorSample> found = sample(candidates);
+    for (std::size_t i = 0; i < refined; ++i) {
+      const Knot middle = knot(candidates[i], found[i]);
+      (middle.slope < 0 ? brackets[i].left : brackets[i].right) = middle;
+    }
+  }
+}
+
+// ---- refinement by values alone: Brent, one valley after another -----------------------------
+
+void search_by_values(const Objective& objective, const GlobalSearchOptions& options,
+                      OptimizeSummary& summary) {
+  Counter counter(objective);
+  const std::vector<double> gains = scan_gains(objective, options);
   const std::vector<double> errors = counter.errors(gains);
   for (std::size_t i = 0; i < gains.size(); ++i) summary.history.push_back({gains[i], errors[i]});
 
@@ -155,27 +245,35 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
 
   const int bits = static_cast<int>(std::ceil(-std::log2(options.gain_tolerance)));
   for (const std::size_t valley : valleys) {
-    if (counter.count() >= options.largest_evaluations) break;
-    const double left = gains[valley == 0 ? 0 : valley - 1];
-    const double right = gains[std::min(valley + 1, gains.size() - 1)];
-    auto iterations = static_cast<std::uintmax_t>(options.largest_evaluations - counter.count());
+    auto iterations = static_cast<std::uintmax_t>(2 * options.rounds);
     boost::math::tools::brent_find_minima(
         [&](double gain) {
           const double error = counter.error(gain);
           summary.history.push_back({gain, error});
           return error;
         },
-        left, right, bits, iterations);
+        gains[valley == 0 ? 0 : valley - 1], gains[std::min(valley + 1, gains.size() - 1)], bits,
+        iterations);
   }
-  summary.status = counter.count() < options.largest_evaluations ? OptimizeStatus::converged
-                                                                 : OptimizeStatus::budget;
+  summary.evaluations = counter.count();
+}
+
+}  // namespace
+
+OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options) {
+  const auto start = Clock::now();
+  OptimizeSummary summary;
+  if (objective.samples) {
+    search_with_slopes(objective, options, summary);
+  } else {
+    search_by_values(objective, options, summary);
+  }
   summary.reason =
-      fmt::format("scanned {} gains, refined the {} deepest valleys", gains.size(), valleys.size());
+      fmt::format("scanned {} gains, refined up to {} valleys", options.scan, options.brackets);
   std::ranges::sort(summary.history, {}, &Evaluation::gain);
   const Evaluation& best = *std::ranges::min_element(summary.history, {}, &Evaluation::error);
   summary.gain = best.gain;
   summary.error = best.error;
-  summary.evaluations = counter.count();
   summary.seconds = seconds_since(start);
   return summary;
 }

@@ -62,13 +62,15 @@ OptimizeSummary steepest_descent(const Objective& objective,
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;   ///< of the scan, in gain scales, > 0
   double largest_gain = 1e3;     ///< of the scan, in gain scales; cut to what the engine resolves
-  Index scan = 96;               ///< gains of the log-spaced scan, 0 besides, ≥ 3
-  Index brackets = 4;            ///< valleys that are refined, the deepest first, ≥ 1
-  double gain_tolerance = 1e-6;  ///< of a refined gain, relative, > 0
-  Index largest_evaluations = 2000;  ///< > 0
+  Index scan = 96;               ///< gains of the scan: 0 and log-spaced ones, ≥ 4
+  Index brackets = 8;            ///< valleys that are refined, the deepest first, ≥ 1
+  Index rounds = 6;              ///< of refinement, ≥ 1; by values, two rollouts each
+  double gain_tolerance = 1e-6;  ///< relative; a valley that is known as well is done
 };
 
-/// A log-spaced scan, then a refinement in each of the deepest valleys (Brent).
+/// A log-spaced scan, then a refinement of the deepest valleys: by cubics through errors and exact
+/// slopes, a round for all valleys in one batch, or, for an objective without slopes, by Brent's
+/// method in one valley after another. Never worse than any gain that it has tried.
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options = {});
 
 }  // namespace nuno
