@@ -12,7 +12,7 @@ namespace nuno::bench {
 /// E at a few gains, as the limit of small steps has it.
 class Convergence {
  public:
-  /// Around the best gain of `native`, the engine at its own step.
+  /// Up to the best gain of the problem of `native`, an engine whose step is about right.
   explicit Convergence(const Backend& native);
 
   double off(const Backend& backend) const;   ///< largest |E − limit| [m]

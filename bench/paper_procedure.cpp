@@ -25,13 +25,16 @@ Vec2 column(const Points& points, std::size_t i) {
 
 }  // namespace
 
-PlainChain::PlainChain(const Problem& problem, Index steps)
+PlainChain::PlainChain(const Problem& problem, Index steps, PlainLaunch launch)
     : problem_(problem), steps_(steps), target_shape_(shape_of(problem.target)) {
   const Chain& chain = problem.chain;
   const double h = problem.arrival_time / static_cast<double>(steps);
   const double r = 1 - h * chain.drag_rate();
   launch_velocity_ =
-      ballistic_launch(chain.initial, problem.target, chain.gravity, {h, r, h, r, h}, steps);
+      launch == PlainLaunch::paper
+          ? ballistic_launch(chain.initial, problem.target, problem.arrival_time, chain.gravity,
+                             chain.drag_rate())
+          : ballistic_launch(chain.initial, problem.target, chain.gravity, {h, r, h, r, h}, steps);
   if (problem.launch == Launch::inextensible) {
     launch_velocity_ = without_stretching(chain.initial, launch_velocity_);
   }

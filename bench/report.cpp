@@ -106,7 +106,7 @@ void Report::add_ratio(std::string key, const Statistics& value) {
 
 void Report::print_ratios() const {
   fmt::print("\n== ratios: median (smallest–largest) over pairs of runs side by side\n");
-  for (const Ratio& ratio : ratios_) fmt::print("  {:<30}{}\n", ratio.key, cell(ratio.value));
+  for (const Ratio& ratio : ratios_) fmt::print("  {:<34}{}\n", ratio.key, cell(ratio.value));
 }
 
 std::string Report::csv() const {
