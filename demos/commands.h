@@ -38,9 +38,16 @@ struct CompareOptions {
   std::string out;                  ///< folder, "-" for compare.json on standard output, or none
 };
 
+/// The page on which both shapes are drawn.
+struct StudioOptions {
+  int port = 8471;            ///< of 127.0.0.1, 0 … 65535; 0, or one that is taken: any free one
+  bool opens_browser = true;  ///< where there is a desktop
+};
+
 // The commands. They throw InputError and OutputError, and say themselves why a rollout diverged.
 ExitStatus simulate(const SimulateOptions& options);
 ExitStatus optimize(const OptimizeOptions& options);
 ExitStatus compare(const CompareOptions& options);
+ExitStatus serve_studio(const StudioOptions& options);
 
 }  // namespace nuno

@@ -51,19 +51,26 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
   return backend;
 }
 
+SceneFile made_ready(const std::string& path, Scene scene) {
+  // make_problem's messages begin with the scene's name; people look for the file's.
+  Scene named_after_file = scene;
+  named_after_file.name = path;
+  return {path, std::move(scene), make_problem(named_after_file)};
+}
+
 }  // namespace
 
 SceneFile read_scene_file(const std::string& path, std::optional<double> time_step) {
-  SceneFile file{path, read_scene(path), {}};
+  Scene scene = read_scene(path);
   if (time_step) {
-    file.scene.time_step = time_step;
-    validate(file.scene, "--time-step");
+    scene.time_step = time_step;
+    validate(scene, "--time-step");
   }
-  // make_problem's messages begin with the scene's name; people look for the file's.
-  Scene named_after_file = file.scene;
-  named_after_file.name = path;
-  file.problem = make_problem(named_after_file);
-  return file;
+  return made_ready(path, std::move(scene));
+}
+
+SceneFile parse_scene_file(const std::string& json, const std::string& path) {
+  return made_ready(path, parse_scene(json, path));
 }
 
 void require_few_frames(const SceneFile& file) {

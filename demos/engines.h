@@ -21,6 +21,9 @@ struct SceneFile {
 /// `time_step`, if given, takes the place of the scene's.
 SceneFile read_scene_file(const std::string& path, std::optional<double> time_step = std::nullopt);
 
+/// The same from JSON text that messages call `path`.
+SceneFile parse_scene_file(const std::string& json, const std::string& path);
+
 /// Throws InputError if a result of this scene would hold more frames than memory does.
 void require_few_frames(const SceneFile& file);
 

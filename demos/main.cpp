@@ -191,6 +191,28 @@ ExitStatus run(int argc, char** argv) {
   compare_command.group(commands);
   compare_command.callback([&] { chosen = [&] { return compare(comparison); }; });
 
+  StudioOptions studio_options;
+  CLI::App& studio_command =
+      *app.add_subcommand("studio", "Draw both shapes in the browser, throw, watch");
+  studio_command
+      .add_option_function<std::string>(
+          "--port",
+          [&](const std::string& text) {
+            const double port = number("--port", text);
+            if (!(port >= 0 && port <= 65535 && port == std::floor(port))) {
+              throw CLI::ValidationError(
+                  "--port", fmt::format("{} is not a whole number within 0 … 65535", text));
+            }
+            studio_options.port = static_cast<int>(port);
+          },
+          "Port of 127.0.0.1; if it is taken, or 0, any free one")
+      ->type_name("P")
+      ->default_str(fmt::format("{}", studio_options.port));
+  studio_command.add_flag_callback(
+      "--no-open", [&] { studio_options.opens_browser = false; }, "Do not open the browser");
+  studio_command.group(commands);
+  studio_command.callback([&] { chosen = [&] { return serve_studio(studio_options); }; });
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

@@ -15,13 +15,18 @@ bool diverged(const Rollout& rollout) {
          !std::isfinite(rollout.error.centroid) || !std::isfinite(rollout.control_effort);
 }
 
+std::string divergence_message(const std::string& scene_path, const Backend& backend,
+                               const Rollout& rollout) {
+  const bool stopped = rollout.status == RolloutStatus::diverged;
+  return fmt::format("{}: diverged on {} at α = {} N/m in step {} of {}: {}", scene_path,
+                     backend.name(), rollout.gain,
+                     stopped ? rollout.diverged_at_step : backend.steps(), backend.steps(),
+                     stopped ? rollout.reason : "the error is no longer finite");
+}
+
 void report_divergence(const std::string& scene_path, const Backend& backend,
                        const Rollout& rollout) {
-  const bool stopped = rollout.status == RolloutStatus::diverged;
-  complain(fmt::format("{}: diverged on {} at α = {} N/m in step {} of {}: {}", scene_path,
-                       backend.name(), rollout.gain,
-                       stopped ? rollout.diverged_at_step : backend.steps(), backend.steps(),
-                       stopped ? rollout.reason : "the error is no longer finite"));
+  complain(divergence_message(scene_path, backend, rollout));
 }
 
 Objective with_progress(Objective objective, const std::string& label) {

@@ -11,7 +11,11 @@ namespace nuno {
 /// number.
 bool diverged(const Rollout& rollout);
 
-/// Says on standard error at which step a rollout diverged and why.
+/// At which step a rollout diverged and why.
+std::string divergence_message(const std::string& scene_path, const Backend& backend,
+                               const Rollout& rollout);
+
+/// Says that on standard error.
 void report_divergence(const std::string& scene_path, const Backend& backend,
                        const Rollout& rollout);
 

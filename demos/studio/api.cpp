@@ -1,0 +1,364 @@
+#include "api.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <nuno/rollout.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "../engines.h"
+#include "../json_files.h"
+#include "../rollouts.h"
+#include "flight.h"
+
+namespace nuno::studio {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+// What messages call the body of a request: the page saves it under a name like this.
+constexpr const char* scene_name = "scene.json";
+
+// A page waits for its answer: more than this for one rollout belongs on the command line.
+constexpr double most_particle_steps_native = 5e7;
+constexpr double most_particle_steps_box2d = 2e7;
+constexpr Index most_frames = 2000;
+constexpr double most_points_in_frames = 2e6;
+constexpr double most_flights_after = 10;  // seconds after arrival, in arrival times
+constexpr std::size_t longest_page = 64;
+
+std::string dump(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Calls `write` with a FILE that ends up in a string.
+template <typename Write>
+std::string printed(const Write& write) {
+  char* text = nullptr;
+  std::size_t size = 0;
+  std::FILE* const file = open_memstream(&text, &size);
+  if (!file) throw std::bad_alloc();
+  try {
+    write(file);
+  } catch (...) {
+    std::fclose(file);
+    std::free(text);
+    throw;
+  }
+  std::fclose(file);
+  std::string result(text, size);
+  std::free(text);
+  return result;
+}
+
+/// The options of a request, named as the command line's are.
+struct Options {
+  std::string page;
+  std::string backend{backend_names.front()};
+  std::string optimizer{optimizer_names.front()};
+  double alpha = 0;
+  bool has_alpha = false;
+  Index frames = 0;
+  double after = 0;
+};
+
+double number(const std::string& name, const std::string& text) {
+  double value = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc() || rest != end || !std::isfinite(value)) {
+    throw InputError(fmt::format("{}: {} is not a finite number", name, dump(text)));
+  }
+  if (!(value >= 0)) throw InputError(fmt::format("{}: {} is not >= 0", name, text));
+  return value;
+}
+
+template <typename Words>
+std::string word(const std::string& name, const std::string& text, const Words& words) {
+  if (std::ranges::find(words, text) == std::end(words)) {
+    throw InputError(
+        fmt::format("{}: {} is not one of {}", name, dump(text), fmt::join(words, ", ")));
+  }
+  return text;
+}
+
+/// Throws InputError for a parameter that is not among `known`, stands twice or has a bad value.
+Options read_options(const Parameters& parameters, const std::set<std::string_view>& known) {
+  Options options;
+  std::set<std::string_view> seen;
+  for (const auto& [name, text] : parameters) {
+    const std::string shown = dump(name.substr(0, longest_page));
+    if (!known.contains(name)) {
+      throw InputError(fmt::format("{}: is not one of {}", shown, fmt::join(known, ", ")));
+    }
+    if (!seen.insert(name).second) throw InputError(fmt::format("{}: stands twice", name));
+    if (text.size() > longest_page) {
+      throw InputError(fmt::format("{}: is longer than {} characters", name, longest_page));
+    }
+    if (name == "page") {
+      options.page = text;
+    } else if (name == "backend") {
+      options.backend = word(name, text, backend_names);
+    } else if (name == "optimizer") {
+      options.optimizer = word(name, text, optimizer_names);
+    } else if (name == "alpha") {
+      options.alpha = number(name, text);
+      options.has_alpha = true;
+    } else if (name == "frames") {
+      const double frames = number(name, text);
+      if (frames != std::floor(frames) || frames > static_cast<double>(most_frames)) {
+        throw InputError(
+            fmt::format("{}: {} is not a whole number within 0 … {}", name, text, most_frames));
+      }
+      options.frames = static_cast<Index>(frames);
+    } else {
+      options.after = number(name, text);
+    }
+  }
+  return options;
+}
+
+/// Throws InputError for a scene that would keep the page waiting for minutes.
+void require_quick(const SceneFile& file, const Backend& backend, const Options& options) {
+  const double particles = static_cast<double>(file.scene.particles);
+  const double most =
+      backend.name() == "native" ? most_particle_steps_native : most_particle_steps_box2d;
+  if (static_cast<double>(backend.steps()) * particles > most) {
+    throw InputError(
+        fmt::format("{}: /particles: {} is not few enough for the studio: with {} steps on {}, "
+                    "this is for nuno optimize",
+                    file.path, file.scene.particles, backend.steps(), backend.name()));
+  }
+  if (options.after > most_flights_after * file.scene.arrival_time) {
+    throw InputError(fmt::format("after: {} is not <= {}, {} arrival times", options.after,
+                                 most_flights_after * file.scene.arrival_time, most_flights_after));
+  }
+  const double flight = 1 + options.after / file.scene.arrival_time;
+  if (static_cast<double>(options.frames) * flight * particles > most_points_in_frames) {
+    throw InputError(fmt::format("frames: {} is not <= {}", options.frames,
+                                 std::floor(most_points_in_frames / particles / flight)));
+  }
+}
+
+void append(std::string& text, const Points& points) {
+  text += '[';
+  for (Index i = 0; i < points.cols(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{}[{:.7g},{:.7g}]", i ? "," : "", points(0, i),
+                   points(1, i));
+  }
+  text += ']';
+}
+
+void append(std::string& text, const std::vector<Points>& shapes) {
+  text += '[';
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (i > 0) text += ',';
+    append(text, shapes[i]);
+  }
+  text += ']';
+}
+
+Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
+  Json history = Json::array();
+  for (const Evaluation& evaluation : summary.history) {
+    if (!std::isfinite(evaluation.error)) continue;
+    history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
+  }
+  return {{"optimizer", optimizer},
+          {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
+          {"evaluations", summary.evaluations},
+          {"seconds", summary.seconds},
+          {"reason", summary.reason},
+          {"history", history}};
+}
+
+/// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.
+std::string drawable(const SceneFile& file, const Backend& backend, const Rollout& flight,
+                     const std::optional<Json>& optimization, const Flight& frames,
+                     Clock::time_point start) {
+  const Problem& problem = backend.problem();
+  Json head = {{"scene", file.scene.name},
+               {"backend", backend.name()},
+               {"status", "ok"},
+               {"alpha", flight.gain},
+               {"time_step", backend.time_step()},
+               {"steps", backend.steps()},
+               {"cloth_length", problem.chain.length},
+               {"target_scale", problem.target_scale},
+               {"error",
+                {{"mean", flight.error.mean},
+                 {"max", flight.error.max},
+                 {"centroid", flight.error.centroid},
+                 {"relative", flight.error.mean / problem.chain.length}}},
+               {"control_effort", flight.control_effort},
+               {"effort_unit", effort_unit(problem)},
+               {"max_strain", flight.max_strain}};
+  if (optimization) head["optimization"] = *optimization;
+  std::string text = dump(head);
+  text.pop_back();  // the brace: the shapes follow
+  text += ",\"initial\":";
+  append(text, problem.chain.initial);
+  text += ",\"target\":";
+  append(text, problem.target);
+  text += ",\"final\":";
+  append(text, flight.final);
+  text += ",\"frames\":{\"times\":" + dump(frames.times) + ",\"positions\":";
+  append(text, frames.positions);
+  text += ",\"forces\":";
+  append(text, frames.forces);
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  fmt::format_to(std::back_inserter(text), "}},\"seconds\":{:.6g}}}", seconds);
+  return text;
+}
+
+Answer diverged_answer(const SceneFile& file, const Backend& backend, const Rollout& flight) {
+  return refusal(422, divergence_message(file.path, backend, flight));
+}
+
+/// A finished throw: which engine, which gain, and how it was found.
+struct Throw {
+  SceneFile file;
+  std::unique_ptr<Backend> backend;
+  std::optional<OptimizeSummary> found;
+  Rollout flight;
+};
+
+/// As `nuno optimize` and `nuno simulate` do it, with their functions and options.
+Throw run(const std::string& body, const Options& options, bool optimizes, const Turn& turn,
+          bool keeps_frames) {
+  Throw result;
+  result.file = parse_scene_file(body, scene_name);
+  const SceneFile& file = result.file;
+  result.backend = optimizes ? make_backend(options.backend, file)
+                             : make_backend_for_gain(options.backend, file, options.alpha);
+  require_quick(file, *result.backend, options);
+  double gain = options.alpha;
+  if (optimizes) {
+    result.found = run_optimizer(options.optimizer, cancellable(*result.backend, turn));
+    gain = result.found->gain;
+  }
+  turn.check();
+  if (keeps_frames) require_few_frames(file);
+  result.flight = rollout(*result.backend, gain,
+                          {.frames_per_second = keeps_frames ? file.scene.frames_per_second : 0});
+  return result;
+}
+
+Answer throw_answer(const std::string& body, const Options& options, bool optimizes,
+                    const Turn& turn) {
+  const auto start = Clock::now();
+  const Throw done = run(body, options, optimizes, turn, false);
+  if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
+  Flight frames;
+  if (options.frames > 0) {
+    frames = fly(*done.backend, done.flight.gain, options.frames, options.after, turn);
+  }
+  std::optional<Json> optimization;
+  if (done.found) optimization = to_json(*done.found, options.optimizer);
+  return {.body = drawable(done.file, *done.backend, done.flight, optimization, frames, start)};
+}
+
+/// The file that the command line's --out writes: simulate's where a gain is given.
+Answer result_answer(const std::string& body, const Options& options, const Turn& turn) {
+  const Throw done = run(body, options, !options.has_alpha, turn, true);
+  if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
+  std::optional<Optimization> optimization;
+  if (done.found) optimization = Optimization{options.optimizer, *done.found};
+  return {.body = printed([&](std::FILE* file) {
+            write_result(file, done.file.scene.name, *done.backend, done.flight, optimization);
+          }),
+          .file_name = "result.json"};
+}
+
+Answer scene_answer(const std::string& body) {
+  return {.body = nuno::to_json(parse_scene_file(body, scene_name).scene)};
+}
+
+Json about() {
+  // A scene of defaults; the required fields are left out of it.
+  Json defaults = Json::parse(nuno::to_json(Scene{}));
+  for (const char* required : {"name", "arrival_time", "initial", "target"}) {
+    defaults.erase(required);
+  }
+  return {{"version", NUNO_VERSION},
+          {"backends", backend_names},
+          {"optimizers", optimizer_names},
+          {"defaults", defaults}};
+}
+
+const std::set<std::string_view> of_optimize = {"page", "backend", "optimizer", "frames", "after"};
+const std::set<std::string_view> of_simulate = {"page", "backend", "alpha", "frames", "after"};
+const std::set<std::string_view> of_result = {"page", "backend", "optimizer", "alpha"};
+
+constexpr std::array<std::string_view, 4> posts = {"/api/optimize", "/api/simulate", "/api/result",
+                                                   "/api/scene"};
+
+}  // namespace
+
+Answer refusal(int status, const std::string& message) {
+  return {.status = status, .body = dump({{"error", message}})};
+}
+
+Answer Api::get(const std::string& path, const Parameters& parameters) try {
+  if (path == "/api/about") {
+    read_options(parameters, {});
+    return {.body = dump(about())};
+  }
+  if (std::ranges::find(posts, path) != posts.end()) {
+    return refusal(405, path + ": takes POST with a scene");
+  }
+  return refusal(404, "there is no such page");
+} catch (const InputError& error) {
+  return refusal(400, error.what());
+}
+
+Answer Api::post(const std::string& path, const Parameters& parameters, const std::string& body) {
+  Turn turn;
+  std::string page;
+  Answer answer;
+  try {
+    if (path == "/api/scene") {
+      read_options(parameters, {});
+      answer = scene_answer(body);
+    } else if (path == "/api/optimize" || path == "/api/simulate") {
+      const bool optimizes = path == "/api/optimize";
+      const Options options = read_options(parameters, optimizes ? of_optimize : of_simulate);
+      page = options.page;
+      turn = turns_.begin(page);
+      answer = throw_answer(body, options, optimizes, turn);
+    } else if (path == "/api/result") {
+      const Options options = read_options(parameters, of_result);
+      page = options.page;
+      turn = turns_.begin(page);
+      answer = result_answer(body, options, turn);
+    } else if (path == "/" || path == "/api/about") {
+      answer = refusal(405, path + ": takes GET");
+    } else {
+      answer = refusal(404, "there is no such page");
+    }
+  } catch (const InputError& error) {
+    answer = refusal(400, error.what());
+  } catch (const Cancelled&) {
+    answer = refusal(409, "a newer request of this page took its place");
+  } catch (const std::bad_alloc&) {
+    answer = refusal(413, "the scene needs more memory than there is");
+  }
+  turns_.end(page, turn);
+  return answer;
+}
+
+}  // namespace nuno::studio

@@ -1,0 +1,57 @@
+#include "cancellation.h"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace nuno::studio {
+namespace {
+
+// A few tenths of a second on the slower engine; whole SIMD packs on the faster one.
+constexpr double particle_steps_of_a_portion = 2e7;
+constexpr std::size_t smallest_portion = 16;
+
+}  // namespace
+
+Turn Turns::begin(const std::string& page) {
+  Turn turn;
+  if (page.empty()) return turn;
+  turn.over_ = std::make_shared<std::atomic<bool>>(false);
+  const std::scoped_lock lock(mutex_);
+  auto& running = running_[page];
+  if (running) *running = true;
+  running = turn.over_;
+  return turn;
+}
+
+void Turns::end(const std::string& page, const Turn& turn) {
+  const std::scoped_lock lock(mutex_);
+  const auto running = running_.find(page);
+  if (running != running_.end() && running->second == turn.over_) running_.erase(running);
+}
+
+Objective cancellable(const Backend& backend, const Turn& turn) {
+  const double work = static_cast<double>(backend.steps()) *
+                      static_cast<double>(backend.problem().chain.particles());
+  const std::size_t portion =
+      std::max(smallest_portion, static_cast<std::size_t>(particle_steps_of_a_portion / work));
+
+  const auto in_portions = [turn, portion](auto evaluate) {
+    return [turn, portion, evaluate](std::span<const double> gains) {
+      turn.check();
+      auto result = evaluate(gains.first(std::min(portion, gains.size())));
+      for (std::size_t i = portion; i < gains.size(); i += portion) {
+        turn.check();
+        const auto part = evaluate(gains.subspan(i, std::min(portion, gains.size() - i)));
+        result.insert(result.end(), part.begin(), part.end());
+      }
+      return result;
+    };
+  };
+  Objective result = objective(backend);
+  result.errors = in_portions(result.errors);
+  if (result.samples) result.samples = in_portions(result.samples);
+  return result;
+}
+
+}  // namespace nuno::studio
