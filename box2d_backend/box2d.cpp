@@ -31,14 +31,15 @@ constexpr double most_steps = 50e6;
 constexpr double shortest_rod = 1e-3;  // of the mean rod
 constexpr double pair_range = 1.7;     // rad; the inner spring is 0.009 rods long there
 
-// From 60 random scenes (32 particles, three decades of hinge stiffness, best gain), the gap of the
-// end shapes to the native chain at a 4e-5 s step, over the cloth's length, where a disturbance
-// grows less than tenfold (27 scenes), median / 95th percentile, and ms for a flight of 1 s:
-//     iterations       4                  8                 16                 32
-//     t₀/1000   1.3e-4/1.7e-3  9   1.0e-4/9e-4  12    1.0e-4/7e-4  18    7e-5/7e-4  30
-//     t₀/2000   4.6e-5/1.4e-3 18   4.2e-5/9e-4  24    3.9e-5/7e-4  35    4e-5/7e-4  60
-//     t₀/4000   4.2e-5/1.4e-3 36   4.2e-5/6e-4  48    4.6e-5/3e-4  70
-// Beyond, single precision and the strain of the native chain are all that is left.
+// The gap of the end shapes to the native chain at a 4e-5 s step, at the native best gain, over the
+// cloth's length: median and 95th percentile of the 27 of 60 random scenes (32 particles, t₀ of 0.4
+// to 2 s, three decades of hinge stiffness) where a disturbance grows less than tenfold; and the
+// time of one flight:
+//     iterations         8                        16                       32
+//     t₀/1000   1.0e-4, 8.7e-4, 15 ms    1.0e-4, 7.3e-4, 21 ms    6.1e-5, 6.8e-4,  26 ms
+//     t₀/2000   4.2e-5, 8.7e-4, 30 ms    3.9e-5, 7.3e-4, 35 ms    4.9e-5, 6.8e-4,  65 ms
+//     t₀/4000   3.1e-5, 6.1e-4, 52 ms    3.8e-5, 3.1e-4, 77 ms    4.2e-5, 3.0e-4, 116 ms
+// At t₀/2000 rounding, 3e-5, has caught up with most scenes' error of the step.
 constexpr double default_steps = 2000;
 
 float narrow(double value) { return static_cast<float>(value); }
@@ -52,9 +53,8 @@ Vector2d cross(double w, const Vector2d& r) { return {-w * r.y(), w * r.x()}; }
 using Motions = Eigen::Matrix3Xd;
 
 // A rod is two point masses a rod's length ℓ apart, its particles' shares m₁ and m₂: half of an
-// inner particle, all of a free end. So
-//     mass = m₁ + m₂,   ends at −ℓ·m₂/mass and ℓ·m₁/mass from the centre,   inertia =
-//     m₁·m₂·ℓ²/mass,
+// inner particle, all of a free end. So, measured from the centre of mass,
+//     mass = m₁ + m₂,   left = −ℓ·m₂/mass,   right = ℓ·m₁/mass,   inertia = m₁·m₂·ℓ²/mass,
 // and the joined rods are the point masses on segments that do not stretch, since a particle's two
 // halves move together. The same shares split the force on a particle.
 struct Rod {
@@ -106,9 +106,9 @@ struct HingeSpring {
 //     u' = s·(v + q·a + J·λ̄)       (the first step starts at v₀, not half a step before: u' = v)
 //     x' = x + h·u'
 // s = e^(−κh/2) and q = sinh(κh/2)/κ make drag and a constant force exact. s is not left to Box2D's
-// damping: 1 − s has only three digits in single precision, for a drag of 1e-4 per step. λ̄ ← λ̄ +
-// w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the joints
-// forbid; over a step this multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
+// damping: 1 − s has only three digits in single precision, for a drag of 1e-4 per step.
+// λ̄ ← λ̄ + w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the
+// joints forbid; each step multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
 //
 // Box2D's position solver closes what stays open of the joints, of third order in h, and does so
 // at x + h·v: so it is handed poses that lead by the last step's h·(u' − v), and its corrections
