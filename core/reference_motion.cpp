@@ -38,13 +38,23 @@ void turn(Points& vectors, const Points& rotation) {
   }
 }
 
+/// w = s¹⁶: a correction late on the way. What it has to change is what the end is like, and the
+/// later a force comes the less of it is spent; at s¹⁶ the last tenth of the time takes most of it.
+double aim_share_at(double progress) {
+  const double s4 = std::pow(progress * progress, 2);
+  return std::pow(s4 * s4, 2);
+}
+
 }  // namespace
 
 ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
     : moves_(problem.reference == Reference::morph), time_step_(time_step) {
   const Points& initial = problem.chain.initial;
+  if (problem.aim_offset.size() > 0) offset_ = shape_of(problem.aim_offset);
   if (!moves_) {
+    aim_share_ = 1;
     shape_ = shape_of(problem.target);
+    if (offset_.size() > 0) shape_ += offset_;
     velocity_ = Points::Zero(shape_.rows(), shape_.cols());
     return;
   }
@@ -82,6 +92,9 @@ void ReferenceMotion::advance() {
   if (!moves_) return;
   const Points before = shape_;
   progress_ += step_progress_;
+  const double share = aim_share_at(progress_);
+  aim_rate_ = (share - aim_share_) / time_step_;
+  aim_share_ = share;
   step_progress_ += step_change_;
   turn(direction_, turn_);
   turn(turn_, turn_change_);
@@ -97,6 +110,7 @@ void ReferenceMotion::place_shape() {
         shape_.col(i) + (length_[i] + progress_ * length_change_[i]) * direction_.col(i);
   }
   shape_ = shape_of(shape_);
+  if (offset_.size() > 0) shape_ += aim_share_ * offset_;
 }
 
 }  // namespace nuno

@@ -313,6 +313,82 @@ void fly_lanes(const ChainPlan& plan, const ReferenceMotion& reference, const do
   flight(plan, reference, initial, launch_velocity, gains, count, finals, tangents);
 }
 
+/// The number whose value is the same in every lane and whose slope differs.
+HWY_INLINE Dual<Pack> with_slopes(double value, Pack slope) { return {Pack(value), slope}; }
+
+template <bool damped_control>
+void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* initial,
+                     const double* launch_velocity, double gain, const double* aim_directions,
+                     Index count, double* tangents) {
+  using T = Dual<Pack>;
+  const Index n = plan.particles;
+  const auto size = static_cast<std::size_t>(n);
+  const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
+  const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
+  const std::unique_ptr<Vec2<Pack>[]> aim(new Vec2<Pack>[size]);
+  const std::unique_ptr<Elimination<T>[]> segments(new Elimination<T>[size]);
+  // One coordinate of all directions, a direction a lane.
+  const auto across = [&](const double* directions, Index coordinate) HWY_ATTR {
+    double values[HWY_MAX_BYTES / sizeof(double)] = {};
+    for (Index lane = 0; lane < count; ++lane) {
+      values[lane] = directions[lane * 2 * n + coordinate];
+    }
+    return load_lanes(values, Pack());
+  };
+  const T zero = Constant<T>::of(0);
+  Sums<T> sums{{zero, zero}, {zero, zero}};
+  for (Index i = n; i-- > 0;) {
+    aim[i] = {across(aim_directions, 2 * i), across(aim_directions, 2 * i + 1)};
+    x[i] = {Constant<T>::of(initial[2 * i]), Constant<T>::of(initial[2 * i + 1])};
+    v[i] = {Constant<T>::of(launch_velocity[2 * i]), Constant<T>::of(launch_velocity[2 * i + 1])};
+    sums.position = sums.position + x[i];
+    sums.velocity = sums.velocity + v[i];
+  }
+
+  const double damping = shape_damping(plan.damping_ratio, gain, plan.particle_mass);
+  const T particles = Constant<T>::of(static_cast<double>(n));
+  for (Index step = 0; step < plan.steps; ++step) {
+    const double* shape = reference.shape().data();
+    const double* motion = reference.velocity().data();
+    const Pack share(reference.aim_share());
+    const Pack rate(reference.aim_rate());
+    const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
+    const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
+    sums = advance<damped_control>(
+        plan, step == 0, x.get(), v.get(), segments.get(),
+        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) HWY_ATTR {
+          const Vec2<T> place{with_slopes(shape[2 * j], share * aim[j].x),
+                              with_slopes(shape[2 * j + 1], share * aim[j].y)};
+          const Vec2<T> miss = place + (center - position);
+          Vec2<T> force{scale(gain, miss.x), scale(gain, miss.y)};
+          if constexpr (damped_control) {
+            const Vec2<T> speed{with_slopes(motion[2 * j], rate * aim[j].x),
+                                with_slopes(motion[2 * j + 1], rate * aim[j].y)};
+            const Vec2<T> lag = speed + (drift - velocity);
+            force = force + Vec2<T>{scale(damping, lag.x), scale(damping, lag.y)};
+          }
+          return force;
+        });
+    reference.advance();
+  }
+  for (Index i = 0; i < n; ++i) {
+    write_lanes(x[i].x.slope, tangents + 2 * i, nullptr, 2 * n, count);
+    write_lanes(x[i].y.slope, tangents + 2 * i + 1, nullptr, 2 * n, count);
+  }
+}
+
+void fly_along_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+                   const double* launch_velocity, double gain, const double* aim_directions,
+                   Index count, double* tangents) {
+  const auto flight =
+      plan.damping_ratio > 0 && gain > 0 ? fly_along_lanes<true> : fly_along_lanes<false>;
+  for (Index first = 0; first < count; first += lanes_of(Pack())) {
+    const Index skip = first * 2 * plan.particles;
+    flight(plan, reference, initial, launch_velocity, gain, aim_directions + skip,
+           std::min(lanes_of(Pack()), count - first), tangents + skip);
+  }
+}
+
 void fly_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
              const double* launch_velocity, const double* gains, Index count, double* finals,
              double* tangents) {
@@ -344,6 +420,7 @@ namespace nuno::native {
 
 HWY_EXPORT(step_scalar);
 HWY_EXPORT(fly_all);
+HWY_EXPORT(fly_along_all);
 HWY_EXPORT(lanes);
 HWY_EXPORT(instruction_set);
 
@@ -358,6 +435,13 @@ void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* 
   HWY_DYNAMIC_DISPATCH(fly_all)
   (plan, reference, initial, launch_velocity, gains.data(), static_cast<Index>(gains.size()),
    finals, tangents);
+}
+
+void fly_along(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+               const double* launch_velocity, double gain, const double* aim_directions,
+               Index count, double* tangents) {
+  HWY_DYNAMIC_DISPATCH(fly_along_all)
+  (plan, reference, initial, launch_velocity, gain, aim_directions, count, tangents);
 }
 
 Index lanes() { return HWY_DYNAMIC_DISPATCH(lanes)(); }

@@ -49,6 +49,12 @@ void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* 
          const double* launch_velocity, std::span<const double> gains, double* finals,
          double* tangents);
 
+/// One flight at one gain: the derivatives of its final positions [2N] along each of `count`
+/// directions of the aim offset [2N], one after another.
+void fly_along(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+               const double* launch_velocity, double gain, const double* aim_directions,
+               Index count, double* tangents);
+
 /// Gains that `fly` takes side by side, one a SIMD lane.
 Index lanes();
 

@@ -2,14 +2,13 @@
 
 #include <nuno/error.h>
 #include <nuno/launch.h>
+#include <nuno/parallel.h>
 
 #include "chain_kernel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <thread>
 
 namespace nuno::native {
 namespace {
@@ -121,26 +120,38 @@ class NativeBackend final : public Backend {
     return fly_over(gains, problem().chain.initial, true);
   }
 
+  Eigen::MatrixXd arrival_tangent(double gain) const override {
+    const Index size = problem().target.size();
+    const ReferenceMotion reference(problem(), time_step());
+    // A unit aim offset of each coordinate, about its centroid.
+    Eigen::MatrixXd aim = Eigen::MatrixXd::Identity(size, size);
+    for (Index k = 0; k < size; ++k) {
+      Eigen::Map<Points> direction(aim.col(k).data(), 2, size / 2);
+      direction = shape_of(direction).eval();
+    }
+    const Points velocities = nuno::launch(*this);
+    Eigen::MatrixXd tangent(size, size);
+    const Index batch = lanes();
+    parallel_for((size + batch - 1) / batch, [&](Index b) {
+      const Index first = b * batch;
+      fly_along(plan_, reference, problem().chain.initial.data(), velocities.data(), gain,
+                aim.col(first).data(), std::min(batch, size - first), tangent.col(first).data());
+    });
+    return tangent;
+  }
+
  private:
   std::vector<ErrorSample> fly_over(std::span<const double> gains, const Points& initial,
                                     bool with_slopes) const {
     const Points velocities = launch(*this);
     std::vector<ErrorSample> samples(gains.size());
     const auto batch = static_cast<std::size_t>(lanes());
-    std::atomic<std::size_t> next = 0;
-    const auto work = [&] {
-      for (std::size_t first; (first = next.fetch_add(batch)) < gains.size();) {
-        const auto here = gains.subspan(first, std::min(batch, gains.size() - first));
-        fly_batch(here, initial, velocities, with_slopes,
-                  std::span(samples).subspan(first, here.size()));
-      }
-    };
-    const std::size_t batches = (gains.size() + batch - 1) / batch;
-    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::jthread> threads;
-    for (std::size_t t = 1; t < std::min(cores, batches); ++t) threads.emplace_back(work);
-    work();
-    threads.clear();  // joins
+    parallel_for(static_cast<Index>((gains.size() + batch - 1) / batch), [&](Index b) {
+      const std::size_t first = static_cast<std::size_t>(b) * batch;
+      const auto here = gains.subspan(first, std::min(batch, gains.size() - first));
+      fly_batch(here, initial, velocities, with_slopes,
+                std::span(samples).subspan(first, here.size()));
+    });
     return samples;
   }
 

@@ -116,7 +116,7 @@ TEST(MorphControl, ArrivesNearerWithLessEffortThanHold) {
     scene.damping_ratio = 0;
     const auto hold = native::make_backend(make_problem(scene));
     const OptimizeSummary best = global_search(objective(*hold));
-    const Rollout flight = rollout(*morph, 8);
+    const Rollout flight = rollout(*morph, 2);
     EXPECT_LT(flight.error.mean, 0.5 * best.error) << figure;
     EXPECT_LT(flight.control_effort, rollout(*hold, best.gain).control_effort) << figure;
   }

@@ -72,9 +72,13 @@ class Backend {
     return errors(gains, problem_.chain.initial);
   }
 
-  /// Whether `error_samples` is there: an engine that knows dE/dα.
+  /// Whether the two below are there: an engine that knows its derivatives.
   virtual bool has_slopes() const { return false; }
   virtual std::vector<ErrorSample> error_samples(std::span<const double> gains) const;
+
+  /// Derivative of the particles' positions at arrival with respect to the problem's aim offset, at
+  /// one gain [2N × 2N], both as x₀ y₀ x₁ y₁ …; only where has_slopes.
+  virtual Eigen::MatrixXd arrival_tangent(double gain) const;
 
  protected:
   Backend(Problem problem, Index steps) : problem_(std::move(problem)), steps_(steps) {}

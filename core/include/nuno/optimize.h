@@ -61,8 +61,8 @@ OptimizeSummary steepest_descent(const Objective& objective,
 
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;   ///< of the scan, in gain scales, > 0
-  double largest_gain = 1e3;     ///< of the scan, in gain scales; cut to what the engine resolves
-  Index scan = 96;               ///< gains of the scan: 0 and log-spaced ones, ≥ 4
+  double largest_gain = 1e2;     ///< of the scan, in gain scales; cut to what the engine resolves
+  Index scan = 72;               ///< gains of the scan: 0 and log-spaced ones, ≥ 4
   Index brackets = 8;            ///< valleys that are refined, the deepest first, ≥ 1
   Index rounds = 6;              ///< of refinement, ≥ 1; by values, two rollouts each
   double gain_tolerance = 1e-6;  ///< relative; a valley that is known as well is done

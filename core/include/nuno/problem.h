@@ -31,6 +31,9 @@ struct Problem {
   Reference reference = Reference::hold;
   Arrival arrival = Arrival::pass;
   double damping_ratio = 0;  ///< ζ of the control force
+  /// How far beside the target the reference motion aims [2 × N], m, see refine.h; empty: not at
+  /// all.
+  Points aim_offset;
 };
 
 /// Throws InputError where a valid scene has no usable chain (a segment of no length).

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nuno/points.h>
+
+#include <functional>
+
+namespace nuno {
+
+/// Calls work(0) … work(count − 1), each once, in any order, on all cores; returns when all are
+/// done. An exception of one of them is thrown here, once the others have stopped.
+void parallel_for(Index count, const std::function<void(Index)>& work);
+
+}  // namespace nuno

@@ -1,0 +1,34 @@
+#include <nuno/parallel.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace nuno {
+
+void parallel_for(Index count, const std::function<void(Index)>& work) {
+  std::atomic<Index> next = 0;
+  std::exception_ptr failure;
+  std::mutex failing;
+  const auto take = [&] {
+    try {
+      for (Index i; (i = next++) < count;) work(i);
+    } catch (...) {
+      const std::lock_guard lock(failing);
+      if (!failure) failure = std::current_exception();
+      next = count;
+    }
+  };
+  {
+    const auto cores = static_cast<Index>(std::max(1u, std::thread::hardware_concurrency()));
+    std::vector<std::jthread> threads;
+    for (Index t = 1; t < std::min(cores, count); ++t) threads.emplace_back(take);
+    take();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace nuno

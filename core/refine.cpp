@@ -1,0 +1,74 @@
+#include <nuno/refine.h>
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <chrono>
+#include <cmath>
+
+namespace nuno {
+
+RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
+                     const MakeBackend& model, const RefineOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const Index particles = problem.chain.particles();
+  Problem aimed = problem;
+  if (aimed.aim_offset.size() == 0) aimed.aim_offset = Points::Zero(2, particles);
+
+  RefineSummary summary;
+  summary.aim_offset = aimed.aim_offset;
+  summary.flight = rollout(*make(aimed), gain);
+  summary.rollouts = 1;
+  summary.error_before = summary.flight.error.mean;
+  summary.reason = fmt::format("{} rounds were not enough", options.rounds);
+
+  const double near_enough = options.tolerance * problem.chain.length;
+  double lambda = 1e-1;  // over the tangent's size
+  for (Index round = 0; round < options.rounds; ++round) {
+    if (summary.flight.error.mean <= near_enough) break;
+    if (summary.flight.status == RolloutStatus::diverged) {
+      summary.reason = "the flight diverged";
+      break;
+    }
+    aimed.aim_offset = summary.aim_offset;
+    const Eigen::MatrixXd tangent = model(aimed)->arrival_tangent(gain);
+    ++summary.tangents;
+    if (!tangent.allFinite()) {
+      summary.reason = "the tangent is not finite";
+      break;
+    }
+    const Points miss = problem.target - summary.flight.final;
+    const Eigen::MatrixXd normal = tangent.transpose() * tangent;
+    const Vector pull = tangent.transpose() * miss.reshaped();
+    const double size = std::sqrt(normal.diagonal().maxCoeff());
+
+    const double before = miss.norm();
+    double after = before;
+    for (int attempt = 0; attempt < 8; ++attempt) {
+      Eigen::MatrixXd damped = normal;
+      damped.diagonal().array() += std::pow(lambda * size, 2);
+      const Vector step = damped.ldlt().solve(pull);
+      aimed.aim_offset = summary.aim_offset + step.reshaped(2, particles);
+      Rollout flight = rollout(*make(aimed), gain);
+      ++summary.rollouts;
+      after = (problem.target - flight.final).norm();
+      if (after < before) {
+        summary.flight = std::move(flight);
+        summary.aim_offset = aimed.aim_offset;
+        lambda = std::max(1e-7, 0.1 * lambda);
+        break;
+      }
+      lambda *= 10;
+    }
+    if (!(after < (1 - options.least_gain) * before)) {
+      summary.reason = "no offset brings it nearer";
+      break;
+    }
+  }
+  summary.converged = summary.flight.error.mean <= near_enough;
+  if (summary.converged) summary.reason = "arrived within the tolerance";
+  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return summary;
+}
+
+}  // namespace nuno
