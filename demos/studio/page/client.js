@@ -1,0 +1,79 @@
+// Requests to the program that serves the page, see API.md.
+
+export const page_id = Math.random().toString(36).slice(2, 10);
+
+export class Refused extends Error {
+  constructor(status, message) {
+    super(message);
+    this.status = status;
+  }
+}
+
+export async function ask(path, parameters, body) {
+  const query = new URLSearchParams(parameters).toString();
+  let response;
+  try {
+    response = await fetch(`/api/${path}${query && `?${query}`}`, {
+      method: 'POST', headers: { 'Content-Type': 'application/json' }, body,
+    });
+  } catch {
+    throw new Refused(0, 'The program behind this page has ended. Start “nuno studio” again: the scene is kept.');
+  }
+  if (!response.ok) {
+    const answer = await response.json().catch(() => ({}));
+    throw new Refused(response.status, answer.error ?? `The studio answered with ${response.status}.`);
+  }
+  return response;
+}
+
+// One kind of work: at most one request under way and one that waits; the newest wins. An urgent one
+// does not wait: it takes the place of the one under way, whose work the program gives up.
+export class Channel {
+  constructor(name) {
+    this.page = `${page_id}-${name}`;
+    this.running = 0;
+    this.newest = 0;
+    this.waiting = null;
+  }
+
+  get busy() { return this.running > 0 || this.waiting !== null; }
+
+  // `work(page)` is a promise; `done(result)` and `failed(error)` are called for what is not
+  // overtaken by then.
+  run({ work, done, failed, urgent }) {
+    const job = { work, done, failed, number: ++this.newest };
+    if (this.running > 0 && !urgent) {
+      this.waiting = job;
+      return;
+    }
+    this.waiting = null;
+    this.start(job);
+  }
+
+  async start(job) {
+    this.running++;
+    try {
+      const result = await job.work(this.page);
+      if (!this.overtaken(job)) job.done(result);
+    } catch (error) {
+      if (error?.status !== 409 && !this.overtaken(job)) job.failed(error);
+    } finally {
+      this.running--;
+      if (this.running === 0 && this.waiting) {
+        const next = this.waiting;
+        this.waiting = null;
+        this.start(next);
+      }
+    }
+  }
+
+  // A later answer is drawn already or an urgent job is on its way; one that only waits does not
+  // make an answer stale: while the pointer moves, there is always one that waits.
+  overtaken(job) { return this.newest !== job.number && !(this.waiting?.number === this.newest); }
+
+  // Drops what waits and ignores what is under way.
+  drop() {
+    this.waiting = null;
+    this.newest++;
+  }
+}
