@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace nuno {
@@ -44,10 +46,31 @@ struct StudioOptions {
   bool opens_browser = true;  ///< where there is a desktop
 };
 
+/// The paper's figures from our own runs.
+struct FiguresOptions {
+  std::string out = "figures";  ///< folder
+};
+
+/// The files that `render` writes: a still or moving SVG, a still, films.
+inline constexpr std::array<std::string_view, 5> render_extensions = {".svg", ".png", ".gif",
+                                                                      ".mp4", ".webm"};
+
+/// Pictures and films of results.
+struct RenderOptions {
+  std::vector<std::string> results;  ///< result files; a scene file is thrown at its best gain
+  std::string out;                   ///< file with one of render_extensions
+  bool still = false;                ///< an SVG that does not move
+  bool plain = false;                ///< shapes alone: no axes, no text
+  double speed = 1;                  ///< of a film over that of the flight, > 0
+  double frames_per_second = 60;     ///< of a film [1/s]
+};
+
 // The commands. They throw InputError and OutputError, and say themselves why a rollout diverged.
 ExitStatus simulate(const SimulateOptions& options);
 ExitStatus optimize(const OptimizeOptions& options);
 ExitStatus compare(const CompareOptions& options);
+ExitStatus make_figures(const FiguresOptions& options);
+ExitStatus render(const RenderOptions& options);
 ExitStatus serve_studio(const StudioOptions& options);
 
 }  // namespace nuno

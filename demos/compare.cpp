@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 
 #include "commands.h"
@@ -8,6 +9,7 @@
 #include "engines.h"
 #include "json_files.h"
 #include "output.h"
+#include "report/report.h"
 #include "rollouts.h"
 #include "summary.h"
 
@@ -38,15 +40,6 @@ std::vector<std::string> scene_paths(const std::vector<std::string>& paths) {
   return result;
 }
 
-void create_folder(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error || !fs::is_directory(path, error)) {
-    throw OutputError(fmt::format("{}: is not a folder that can be created: {}", path,
-                                  error ? error.message() : "something else has that name"));
-  }
-}
-
 // Scene, engine, then what each engine achieved, then how far they are apart.
 constexpr const char* table_row = "{:<{}.32}  {:<6}  {:>11}  {:>9}  {:>8}  {:>11}  {:>8}  {:>12}\n";
 
@@ -71,6 +64,38 @@ void print_rows(std::FILE* table, std::size_t width, const Comparison& compariso
   }
 }
 
+/// A scene's name as part of a file's.
+std::string file_name(const std::string& scene) {
+  std::string name;
+  for (const char c : scene.substr(0, 80)) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_';
+    name += plain ? c : '-';
+  }
+  return name;
+}
+
+void write_report(const std::string& folder, const std::vector<ReportScene>& scenes,
+                  std::FILE* people) {
+  const auto write = [&](const std::string& name, const std::string& text) {
+    write_output((fs::path(folder) / name).string(),
+                 [&](std::FILE* file) { std::fwrite(text.data(), 1, text.size(), file); });
+  };
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const std::string name =
+        fmt::format("figures/{:02}-{}", i + 1, file_name(scenes[i].comparison.scene));
+    write(name + "-gain.svg", gain_figure(scenes[i], 800, false));
+    if (scenes[i].choices.empty()) continue;
+    const figures::FlightFigure figure{
+        .title = scenes[i].comparison.scene,
+        .subtitle = "each engine at its best gain; errors in % of the cloth’s length"};
+    write(name + "-flight.svg",
+          figures::draw_flights(scenes[i].choices.front().flights, figure).svg());
+  }
+  write("report.html", report_page(scenes));
+  fmt::print(people, "The report, to be opened in a browser: {}\n",
+             (fs::path(folder) / "report.html").string());
+}
+
 }  // namespace
 
 ExitStatus compare(const CompareOptions& options) {
@@ -90,8 +115,9 @@ ExitStatus compare(const CompareOptions& options) {
     pairs.push_back({std::move(file), std::move(native), std::move(box2d)});
   }
   std::string out = options.out;
-  if (!out.empty() && out != "-") {
-    create_folder(out);
+  const bool to_folder = !out.empty() && out != "-";
+  if (to_folder) {
+    create_folder((fs::path(out) / "figures").string());
     out = (fs::path(out) / "compare.json").string();
     require_writable(out);
   }
@@ -99,6 +125,7 @@ ExitStatus compare(const CompareOptions& options) {
   std::FILE* const table = people(out);
   ExitStatus status = ExitStatus::done;
   std::vector<Comparison> comparisons;
+  std::vector<ReportScene> report;
   print_heading(table, width);
   for (const Pair& pair : pairs) {
     Comparison comparison = compare_engines(pair.file.scene.name, *pair.native, *pair.box2d);
@@ -111,6 +138,7 @@ ExitStatus compare(const CompareOptions& options) {
     }
     print_rows(table, width, comparison);
     std::fflush(table);
+    if (to_folder) report.push_back(make_report_scene(comparison, *pair.native, *pair.box2d));
     comparisons.push_back(std::move(comparison));
   }
   fmt::print(table,
@@ -120,6 +148,7 @@ ExitStatus compare(const CompareOptions& options) {
   if (!out.empty() && !comparisons.empty()) {
     write_output(out, [&](std::FILE* file) { write_comparisons(file, comparisons); });
   }
+  if (!report.empty()) write_report(options.out, report, table);
   return status;
 }
 

@@ -213,6 +213,45 @@ ExitStatus run(int argc, char** argv) {
   studio_command.group(commands);
   studio_command.callback([&] { chosen = [&] { return serve_studio(studio_options); }; });
 
+  FiguresOptions pictures;
+  CLI::App& figures_command =
+      *app.add_subcommand("figures", "The paper's figures 5 to 8, from runs of our own");
+  add_out(figures_command, pictures.out, "DIR", "Folder for figure-5 … figure-8, SVG and PNG");
+  figures_command.get_option("--out")->default_str(pictures.out);
+  figures_command.group(commands);
+  figures_command.callback([&] { chosen = [&] { return make_figures(pictures); }; });
+
+  RenderOptions rendering;
+  CLI::App& render_command = *app.add_subcommand("render", "Results as a picture or a film");
+  render_command
+      .add_option_function<std::vector<std::string>>(
+          "RESULT",
+          [&](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) rendering.results.push_back(not_empty("RESULT", text));
+          },
+          "Result files, overlaid; a scene file is thrown at its best gain")
+      ->type_name("")
+      ->required();
+  add_out(render_command, rendering.out, "FILE",
+          fmt::format("File that ends in {}", fmt::join(render_extensions, ", ")).c_str());
+  render_command.get_option("--out")->required();
+  render_command.add_flag("--still", rendering.still, "An SVG that does not move");
+  render_command.add_flag("--plain", rendering.plain, "The shapes alone: no axes, no text");
+  render_command
+      .add_option_function<std::string>(
+          "--speed",
+          [&](const std::string& text) {
+            rendering.speed = number("--speed", text);
+            if (!(rendering.speed > 0)) {
+              throw CLI::ValidationError("--speed", fmt::format("{} is not > 0", text));
+            }
+          },
+          "Speed of what moves over that of the flight, > 0")
+      ->type_name("S")
+      ->default_str(fmt::format("{}", rendering.speed));
+  render_command.group(commands);
+  render_command.callback([&] { chosen = [&] { return render(rendering); }; });
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {

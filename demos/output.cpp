@@ -129,6 +129,15 @@ void write_output(const std::string& path, const std::function<void(std::FILE*)>
   refuse(path, error.code().message());
 }
 
+void create_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error || !fs::is_directory(path, error)) {
+    throw OutputError(fmt::format("{}: is not a folder that can be created: {}", path,
+                                  error ? error.message() : "something else has that name"));
+  }
+}
+
 void require_standard_output_written() {
   if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
     refuse("-", std::strerror(errno));

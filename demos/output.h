@@ -21,6 +21,9 @@ void require_writable(const std::string& path);
 /// fails or interrupts leaves what was there. "-" is standard output.
 void write_output(const std::string& path, const std::function<void(std::FILE*)>& write);
 
+/// Makes the folder `path` and those above it, if they are not there. Throws OutputError.
+void create_folder(const std::string& path);
+
 /// Throws OutputError if anything that was printed to standard output got lost.
 void require_standard_output_written();
 

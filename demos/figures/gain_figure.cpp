@@ -1,0 +1,175 @@
+#include "gain_figure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight_figure.h"
+
+namespace nuno::figures {
+
+std::vector<Evaluation> local_minima(const std::vector<Evaluation>& curve) {
+  std::vector<Evaluation> result;
+  for (std::size_t i = 1; i + 1 < curve.size(); ++i) {
+    const auto& [x0, y0] = curve[i - 1];
+    const auto& [x1, y1] = curve[i];
+    const auto& [x2, y2] = curve[i + 1];
+    if (!(y1 < y0 && y1 <= y2) || !std::isfinite(y0) || !std::isfinite(y2)) continue;
+    // In log α: the parabola through three points.
+    const double a = std::log(x1 / x0), b = std::log(x2 / x1);
+    const double left = (y0 - y1) / a, right = (y2 - y1) / b;
+    const double curvature = (left + right) / (a + b);
+    const double slope = (right * a - left * b) / (a + b);
+    const double move = curvature > 0 ? std::clamp(-slope / (2 * curvature), -a, b) : 0;
+    result.push_back({x1 * std::exp(move), std::max(0.0, y1 + move * (slope + curvature * move))});
+  }
+  return result;
+}
+
+Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_length,
+                         const GainFigure& options) {
+  const double percent = 100 / cloth_length;
+  const bool small = options.width < 600;
+  double low = curves[0].curve.front().gain, high = curves[0].curve.back().gain;
+  double launch_only = 0, largest = 0;
+  for (const GainCurve& curve : curves) {
+    launch_only = std::max(launch_only, curve.launch_only_error);
+    for (const Evaluation& point : curve.curve) {
+      if (std::isfinite(point.error)) largest = std::max(largest, point.error);
+      low = std::min(low, point.gain);
+      high = std::max(high, point.gain);
+    }
+  }
+  // What is far worse than no control at all is not worth the room.
+  const double top = 1.06 * percent * std::min(largest, 1.7 * launch_only);
+
+  Drawing drawing({options.width, options.height}, options.title + ". " + options.subtitle);
+  double y = 8;
+  if (!options.title.empty()) {
+    drawing.text({16, 26}, options.title, Anchor::start, "title");
+    drawing.text({16, 45}, options.subtitle, Anchor::start, "muted");
+    y = 50;
+  }
+  y += 16;
+  double x = 16;
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const std::string name = engine_name(curves[i].backend);
+    drawing.line({x, y - 4}, {x + 26, y - 4}, i == 0 ? "a thick" : "b dashes");
+    drawing.text({x + 33, y}, name, Anchor::start);
+    x += 56 + 7.4 * static_cast<double>(name.size());
+  }
+  drawing.marker(Marker::circle, {x + 4, y - 4}, 6, "a open", Weight::none);
+  drawing.marker(Marker::square, {x + 14, y - 4}, 6, "b open", Weight::none);
+  drawing.text({x + 23, y}, "local minimum", Anchor::start);
+  x += 132;
+  const bool with_descent =
+      std::ranges::any_of(curves, [](const GainCurve& curve) { return !curve.descent.empty(); });
+  if (with_descent) {
+    drawing.line({x, y - 4}, {x + 26, y - 4}, "soft short thin");
+    drawing.marker(Marker::diamond, {x + 13, y - 4}, 6, "soft", Weight::none);
+    drawing.text({x + 33, y}, small ? "descent" : "steepest descent, step by step", Anchor::start);
+  }
+
+  // No logarithm has a place for 0: launch only stands in a strip of its own.
+  constexpr double strip = 30;
+  const Box frame = {58 + strip, y + 14, options.width - 58 - strip - 18,
+                     options.height - y - 14 - 48};
+  const Plot plot(frame, {"gain α [N/m]", low, high, Scale::logarithmic},
+                  {"", 0, top, Scale::linear});
+  plot.draw_axes(drawing);
+  const double zero = frame.left - strip + 8;
+  const auto at = [&](double gain, double error) {
+    Vec place = plot.at(std::max(gain, low), std::min(percent * error, 2 * top));
+    if (gain < low) place.x = gain <= 0 ? zero : frame.left;
+    return place;
+  };
+  drawing.rectangle({zero - 12, frame.top, 26, frame.height + 24}, "paper");
+  for (const Tick& tick : ticks(plot.y(), static_cast<int>(frame.height / 40))) {
+    const double height = plot.at(low, tick.value).y;
+    drawing.line({zero - 8, height}, {zero + 8, height}, "grid");
+    drawing.text({zero - 15, height + 4}, tick.label, Anchor::end, "muted");
+  }
+  drawing.line({zero - 8, frame.bottom()}, {zero + 8, frame.bottom()}, "rule");
+  drawing.text({zero, frame.bottom() + 18}, "0", Anchor::middle, "muted");
+  drawing.vertical_text({15, frame.top + frame.height / 2}, "error at arrival [% of L]");
+
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    std::vector<Vec> part;
+    drawing.begin_clip(frame);
+    const auto end_part = [&] {
+      drawing.line(part, i == 0 ? "a thick" : "b dashes", i == 0 ? Weight::heavy : Weight::light);
+      part.clear();
+    };
+    for (const Evaluation& point : curves[i].curve) {
+      if (std::isfinite(point.error)) {
+        part.push_back(at(point.gain, point.error));
+      } else {
+        end_part();  // a rollout that diverged leaves a gap
+      }
+    }
+    end_part();
+    drawing.end_clip();
+  }
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    for (const Evaluation& minimum : local_minima(curves[i].curve)) {
+      if (percent * minimum.error > top) continue;
+      drawing.marker(series_marker(i), at(minimum.gain, minimum.error), small ? 5 : 7,
+                     i == 0 ? "a open" : "b open");
+    }
+    drawing.marker(series_marker(i), at(0, curves[i].launch_only_error), small ? 6 : 8, series(i));
+  }
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].descent.empty()) continue;
+    std::vector<Vec> path;
+    for (const Evaluation& step : curves[i].descent) path.push_back(at(step.gain, step.error));
+    drawing.line(path, "soft short thin", Weight::light);
+    for (const Vec& step : path) drawing.marker(Marker::diamond, step, 6, series(i));
+  }
+  // The best of an engine, ringed; both are named, unless they are one.
+  const Box labels = {frame.left + 2, frame.top + 2, frame.width - 4, frame.height - 4};
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    const Evaluation& best = curves[i].best;
+    const Vec place = at(best.gain, best.error);
+    drawing.marker(series_marker(i), place, small ? 7 : 9, series(i));
+    drawing.marker(Marker::ring, place, (small ? 14.0 : 17.0) + 4 * static_cast<double>(i),
+                   i == 0 ? "a" : "b");
+    const bool one = i > 0 && std::abs(best.gain / curves[0].best.gain - 1) < 0.02 &&
+                     std::abs(best.error - curves[0].best.error) < 0.002 * cloth_length;
+    const bool next_too = i == 0 && curves.size() > 1 &&
+                          std::abs(best.gain / curves[1].best.gain - 1) < 0.02 &&
+                          std::abs(best.error - curves[1].best.error) < 0.002 * cloth_length;
+    if (one) continue;
+    drawing.label({place.x, place.y},
+                  small ? fmt::format("{}best: {:.2g} %",
+                                      next_too ? "" : engine_name(curves[i].backend) + "’s ",
+                                      percent * best.error)
+                        : fmt::format("{}: α = {} N/m, error {:.2f} %",
+                                      next_too ? "best, both engines"
+                                               : "best, " + engine_name(curves[i].backend),
+                                      shown(best.gain), percent * best.error),
+                  "strong", labels);
+  }
+  if (with_descent && !curves[0].descent.empty()) {
+    const Evaluation& end = curves[0].descent.back();
+    drawing.label(at(end.gain, end.error),
+                  small ? fmt::format("first valley: {:.2g} %", percent * end.error)
+                        : fmt::format("the descent ends in the first valley: α = {} N/m, {:.2f} %",
+                                      shown(end.gain), percent * end.error),
+                  "", labels);
+  }
+  if (!small) {
+    drawing.label(at(0, curves[0].launch_only_error), "launch only", "", labels);
+  }
+  if (options.cursor) {
+    // What a script needs to place a gain: the frame and its range.
+    drawing.raw(fmt::format(
+        "<g class=\"cursor\" data-left=\"{:.6g}\" data-right=\"{:.6g}\" data-zero=\"{:.6g}\" "
+        "data-low=\"{}\" data-high=\"{}\"><line class=\"line\" x1=\"0\" x2=\"0\" y1=\"{:.6g}\" "
+        "y2=\"{:.6g}\"/><path class=\"dot\" d=\"M0 {:.6g}l5 -8h-10z\"/></g>\n",
+        frame.left, frame.right(), zero, low, high, frame.top, frame.bottom(), frame.top + 1));
+  }
+  return drawing;
+}
+
+}  // namespace nuno::figures

@@ -1,0 +1,294 @@
+#include "report.h"
+
+#include <fmt/format.h>
+
+#include <nuno/optimize.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "../figures/gain_figure.h"
+#include "../output.h"
+#include "../rollouts.h"
+#include "../summary.h"
+#include "embedded/report_css.h"
+#include "embedded/report_html.h"
+#include "embedded/report_js.h"
+
+namespace nuno {
+namespace {
+
+using namespace figures;
+using Json = nlohmann::ordered_json;
+
+// The page's size: what an eye can follow on a screen, and no more.
+constexpr double most_frames = 60;
+constexpr Index most_particles = 64;
+constexpr double most_positions = 1e7;  // in memory, per flight
+constexpr double position_unit = 1e-4;  // of L
+
+double frames_per_second(const Problem& problem) {
+  const double affordable =
+      std::max(1.0, most_positions / static_cast<double>(problem.chain.particles()));
+  return std::min(most_frames, affordable) / problem.arrival_time;
+}
+
+/// Evenly chosen columns, the first and the last among them.
+Points thinned(const Points& points) {
+  const Index count = std::min(points.cols(), most_particles);
+  Points result(points.rows(), count);
+  for (Index i = 0; i < count; ++i) {
+    result.col(i) = points.col(i * (points.cols() - 1) / std::max<Index>(1, count - 1));
+  }
+  return result;
+}
+
+Json rounded(const Points& points, double unit) {
+  Json result = Json::array();
+  for (Index i = 0; i < points.cols(); ++i) {
+    for (Index k = 0; k < 2; ++k) result.push_back(std::llround(points(k, i) / unit));
+  }
+  return result;
+}
+
+/// Frames as whole numbers, each the change since the one before.
+Json packed(const Flight& flight, double unit) {
+  Json result = Json::array();
+  std::vector<long long> last(2 * static_cast<std::size_t>(flight.target.cols()), 0);
+  for (const Points& positions : flight.positions) {
+    for (Index i = 0; i < positions.cols(); ++i) {
+      for (Index k = 0; k < 2; ++k) {
+        const long long value = std::llround(positions(k, i) / unit);
+        long long& before = last[static_cast<std::size_t>(2 * i + k)];
+        result.push_back(value - before);
+        before = value;
+      }
+    }
+  }
+  return result;
+}
+
+std::string text_of(const Json& json) {
+  // "<" ends a script wherever it stands.
+  std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
+    text.replace(at, 1, "\\u003c");
+  }
+  return text;
+}
+
+Json to_json(const ReportScene& scene) {
+  const Flight& first = scene.choices[0].flights[0];
+  const double unit = position_unit * first.cloth_length;
+  Json choices = Json::array();
+  for (const ReportChoice& choice : scene.choices) {
+    Json gains = Json::array(), errors = Json::array(), frames = Json::array();
+    for (const Flight& flight : choice.flights) {
+      gains.push_back(flight.gain);
+      errors.push_back(flight.error / flight.cloth_length);
+      frames.push_back(packed(flight, unit));
+    }
+    choices.push_back({{"gains", gains}, {"errors", errors}, {"frames", frames}});
+  }
+  Json times = Json::array();
+  for (const double time : first.times) times.push_back(std::round(1e6 * time) / 1e6);
+  return {{"name", scene.comparison.scene},
+          {"particles", first.target.cols()},
+          {"length", first.cloth_length},
+          {"unit", unit},
+          {"times", times},
+          {"target", rounded(first.target, unit)},
+          {"choices", choices}};
+}
+
+std::string key(std::size_t engine) {
+  return fmt::format("<span class=\"key {}\"></span>", series(engine));
+}
+
+std::string table(const std::vector<ReportScene>& scenes) {
+  std::string html =
+      "<div class=\"wide\"><table>\n<thead><tr><th>scene</th><th class=\"engine\">engine</th>"
+      "<th>launch only<small>% of L</small></th><th>best α<small>N/m</small></th>"
+      "<th>error<small>% of L</small></th><th>worst particle<small>% of L</small></th>"
+      "<th>at the other’s α<small>% of L</small></th><th>search<small>rollouts</small></th>"
+      "<th>time<small>&nbsp;</small></th><th>shapes apart<small>% of L</small></th></tr></thead>\n"
+      "<tbody>\n";
+  for (std::size_t s = 0; s < scenes.size(); ++s) {
+    const Comparison& comparison = scenes[s].comparison;
+    const double percent = 100 / comparison.cloth_length;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const ComparisonRow& row = comparison.rows[i];
+      const bool better = row.error.mean < comparison.rows[1 - i].error.mean;
+      html += fmt::format(
+          "<tr class=\"{}\"><td class=\"name\">{}</td><td class=\"engine\">{}{}</td>"
+          "<td>{:.2f}</td><td>{}</td><td class=\"{}\">{:.3f}</td><td>{:.2f}</td><td>{:.3f}</td>"
+          "<td>{}</td><td>{}</td><td>{}</td></tr>\n",
+          i == 0 ? "first" : "last",
+          i == 0 ? fmt::format("<a href=\"#scene-{}\">{}</a>", s + 1, xml_text(comparison.scene))
+                 : "",
+          key(i), engine_name(row.backend), percent * row.launch_only_error, shown(row.gain),
+          better ? "better" : "", percent * row.error.mean, percent * row.error.max,
+          percent * row.error_with_the_other_gain, row.evaluations, duration(row.seconds),
+          i == 0 ? fmt::format("{:.3f}", 100 * comparison.shape_difference.mean) : "");
+    }
+  }
+  return html +
+         "</tbody></table></div>\n<p class=\"note\">Bold: the smaller error of the two. Shapes "
+         "apart: the end shapes of both engines at native’s best α, centroids aligned, mean over "
+         "the particles.</p>\n";
+}
+
+std::string section(const ReportScene& scene, std::size_t number) {
+  const Comparison& comparison = scene.comparison;
+  std::string gains;
+  for (std::size_t i = 0; i < scene.choices.size(); ++i) {
+    gains +=
+        fmt::format("<label><input type=\"radio\" name=\"gain-{}\" value=\"{}\"{}>{}</label>\n",
+                    number, i, i == 0 ? " checked" : "", xml_text(scene.choices[i].label));
+  }
+  return fmt::format(
+      R"(<section class="scene" id="scene-{number}" aria-label="{name}">
+<h2>{name}</h2>
+<p class="note">{particles} particles, {time} s, L = {length} m</p>
+<div class="panels">
+<div>
+<div class="legend"><span>{key_a}{engine_a}</span><span>{key_b}{engine_b}</span><span><span
+class="key target"></span>target</span></div>
+<div class="stage" data-part="stage"></div>
+<div class="player">
+<button type="button" data-part="play">Play</button>
+<div class="scrub"><input type="range" min="0" max="1" step="any" value="1" data-part="time"
+aria-label="Time"></div>
+<select data-part="speed" aria-label="Speed"><option value="0.1">× 0.1</option><option
+value="0.25">× 0.25</option><option value="0.5">× 0.5</option><option value="1" selected>×
+1</option><option value="2">× 2</option></select>
+</div>
+<dl class="readings">
+<div><dt>time</dt><dd data-part="clock"></dd></div>
+<div><dt>{key_a}{engine_a}, <span data-part="what"></span></dt><dd data-part="error-0"></dd></div>
+<div><dt>{key_b}{engine_b}, <span data-part="what-1"></span></dt><dd data-part="error-1"></dd></div>
+<div><dt>engines apart</dt><dd data-part="apart-now"></dd></div>
+</dl>
+</div>
+<div>
+<h3>Error at arrival, by gain</h3>
+{figure}
+<fieldset class="gains" data-part="gains"><legend>Gain of the flights shown</legend>
+{gains}</fieldset>
+<h3>Engines apart on the way, mean [% of L]</h3>
+<div data-part="apart"></div>
+<button type="button" class="link" data-part="most"></button>
+<p class="note print" data-part="most-print"></p>
+</div>
+</div>
+</section>
+)",
+      fmt::arg("number", number), fmt::arg("name", xml_text(comparison.scene)),
+      fmt::arg("particles", scene.particles), fmt::arg("time", shown(scene.arrival_time)),
+      fmt::arg("length", shown(comparison.cloth_length)), fmt::arg("key_a", key(0)),
+      fmt::arg("key_b", key(1)), fmt::arg("engine_a", engine_name(comparison.rows[0].backend)),
+      fmt::arg("engine_b", engine_name(comparison.rows[1].backend)),
+      fmt::arg("figure", gain_figure(scene, 440, true)), fmt::arg("gains", gains));
+}
+
+std::string replaced(std::string_view page, std::string_view mark, const std::string& text) {
+  std::string result(page);
+  const std::size_t at = result.find(mark);
+  return at == std::string::npos ? result : result.replace(at, mark.size(), text);
+}
+
+}  // namespace
+
+ReportScene make_report_scene(const Comparison& comparison, const Backend& first,
+                              const Backend& second) {
+  const Problem& problem = first.problem();
+  ReportScene scene{.comparison = comparison,
+                    .particles = problem.chain.particles(),
+                    .arrival_time = problem.arrival_time,
+                    .descent = {},
+                    .choices = {}};
+  const RolloutOptions frames = {.frames_per_second = frames_per_second(problem)};
+  const auto fly = [&](const std::string& label, double first_gain, double second_gain) {
+    show_progress(fmt::format("{}: flights for the report", comparison.scene));
+    const Rollout one = rollout(first, first_gain, frames);
+    const Rollout other = rollout(second, second_gain, frames);
+    if (diverged(one) || diverged(other)) return;
+    ReportChoice choice{
+        label,
+        {make_flight(comparison.scene, first, one), make_flight(comparison.scene, second, other)}};
+    for (Flight& flight : choice.flights) {
+      flight.target = thinned(flight.target);
+      for (Points& positions : flight.positions) positions = thinned(positions);
+    }
+    scene.choices.push_back(std::move(choice));
+  };
+  const double best = comparison.rows[0].gain, other_best = comparison.rows[1].gain;
+  const OptimizeSummary descent = steepest_descent(objective(first));
+  scene.descent = descent.history;
+  fly("each at its own best", best, other_best);
+  if (std::abs(best - other_best) > 0.01 * best) {
+    fly(fmt::format("both at native’s best, {}", shown(best)), best, best);
+    fly(fmt::format("both at Box2D’s best, {}", shown(other_best)), other_best, other_best);
+  }
+  if (std::abs(descent.gain - best) > 0.01 * best) {
+    fly(fmt::format("where descent ends, {}", shown(descent.gain)), descent.gain, descent.gain);
+  }
+  fly("launch only, 0", 0, 0);
+  clear_progress();
+  return scene;
+}
+
+std::string gain_figure(const ReportScene& scene, double width, bool for_page) {
+  const Comparison& comparison = scene.comparison;
+  std::vector<GainCurve> curves;
+  for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
+    const ComparisonRow& row = comparison.rows[i];
+    GainCurve curve{.backend = row.backend,
+                    .launch_only_error = row.launch_only_error,
+                    .curve = {},
+                    .descent = {},
+                    .best = {row.gain, row.error.mean}};
+    for (std::size_t k = 0; k < comparison.curve_gains.size(); ++k) {
+      const double gain = comparison.curve_gains[k];
+      if (gain > 0) curve.curve.push_back({gain, comparison.curve_errors[i][k]});
+    }
+    // The best is a point of the curve as well, between two of the scan.
+    const auto next = std::ranges::upper_bound(curve.curve, row.gain, {}, &Evaluation::gain);
+    if (row.gain > 0) curve.curve.insert(next, curve.best);
+    if (i == 0) curve.descent = scene.descent;
+    curves.push_back(std::move(curve));
+  }
+  GainFigure options;
+  options.width = width;
+  options.height = for_page ? 300 : 430;
+  options.cursor = for_page;
+  if (!for_page) {
+    options.title = "Error at arrival against the gain of the shape control";
+    options.subtitle = fmt::format("{}, {} particles, t₀ = {} s, both engines", comparison.scene,
+                                   scene.particles, shown(scene.arrival_time));
+  }
+  return draw_gain_curves(curves, comparison.cloth_length, options).svg(!for_page);
+}
+
+std::string report_page(const std::vector<ReportScene>& scenes) {
+  std::string sections;
+  Json flights = Json::array();
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    sections += section(scenes[i], i + 1);
+    flights.push_back(to_json(scenes[i]));
+  }
+  std::string page(embedded::report_html);
+  page = replaced(page, "/*{style}*/", style_sheet() + "\n" + std::string(embedded::report_css));
+  page = replaced(page, "<!--{table}-->", table(scenes));
+  page = replaced(page, "<!--{scenes}-->", sections);
+  page = replaced(page, "<!--{footer}-->",
+                  "Made by nuno " NUNO_VERSION
+                  ". The page is one file and needs no network. compare.json beside it holds the "
+                  "numbers.");
+  // The data last: a scene's name may hold anything.
+  page = replaced(page, "/*{script}*/", std::string(embedded::report_js));
+  return replaced(page, "/*{flights}*/", text_of(flights));
+}
+
+}  // namespace nuno
