@@ -4,8 +4,8 @@
 
 namespace nuno {
 
-Problem make_problem(const Scene& scene) {
-  const std::string source = scene.name.empty() ? "scene" : scene.name;
+Problem make_problem(const Scene& scene, std::string source) {
+  if (source.empty()) source = scene.name.empty() ? "scene" : scene.name;
   validate(scene, source);
 
   Problem problem;

@@ -12,6 +12,8 @@
 namespace nuno {
 namespace {
 
+constexpr double torn_strain = 1000;
+
 /// Keeps the frames of a flight, interpolated between the two steps around each frame's time.
 class Recorder {
  public:
@@ -44,16 +46,24 @@ class Recorder {
   Rollout& rollout_;
 };
 
+/// Largest |l/ℓ − 1| of the segments; NaN if a position is.
 double largest_strain(const Chain& chain, const Points& x) {
   double largest = 0;
   for (Index i = 0; i < chain.rest_length.size(); ++i) {
-    const double length = std::hypot(x(0, i + 1) - x(0, i), x(1, i + 1) - x(1, i));
-    largest = std::max(largest, std::abs(length / chain.rest_length[i] - 1));
+    const double dx = x(0, i + 1) - x(0, i);
+    const double dy = x(1, i + 1) - x(1, i);
+    const double strain = std::abs(std::sqrt(dx * dx + dy * dy) / chain.rest_length[i] - 1);
+    if (std::isnan(strain)) return strain;
+    largest = std::max(largest, strain);
   }
   return largest;
 }
 
 }  // namespace
+
+bool is_torn(const Chain& chain, const Points& positions) {
+  return !(largest_strain(chain, positions) < torn_strain);
+}
 
 double effort_unit(const Problem& problem) {
   const Chain& chain = problem.chain;
@@ -98,14 +108,15 @@ Rollout rollout(const Backend& backend, double gain, const RolloutOptions& optio
     if (frame_due) before = cloth->positions();
     cloth->step(forces);
     reference.advance();
-    if (!cloth->positions().allFinite()) {
+    const double strain = largest_strain(problem.chain, cloth->positions());
+    if (!(strain < torn_strain)) {
       result.status = RolloutStatus::diverged;
       result.diverged_at_step = n + 1;
-      result.reason = "a particle's position is no longer finite";
+      result.reason = std::isfinite(strain) ? "a segment is a thousand times its length"
+                                            : "a particle's position is no longer finite";
       break;
     }
-    result.max_strain =
-        std::max(result.max_strain, largest_strain(problem.chain, cloth->positions()));
+    result.max_strain = std::max(result.max_strain, strain);
     if (frame_due) recorder.record(time - h, before, time, cloth->positions(), arriving);
   }
 

@@ -149,7 +149,13 @@ std::string_view word_for(const Words& words, Enum value) {
 /// The JSON of `text`; an InputError for what is no JSON or names a field of an object twice.
 Json parse_json(const std::string& text, const std::string& source) {
   std::vector<std::set<std::string>> names;
-  const auto watch = [&](int, Json::parse_event_t event, Json& value) {
+  // A scene is three deep. Far deeper values could not even be shown without running out of stack.
+  constexpr int deepest = 16;
+  const auto watch = [&](int depth, Json::parse_event_t event, Json& value) {
+    if (depth > deepest) {
+      throw InputError(
+          fmt::format("{}: /: not a scene: nested more than {} deep", source, deepest));
+    }
     if (event == Json::parse_event_t::object_start) {
       names.emplace_back();
     } else if (event == Json::parse_event_t::object_end) {

@@ -52,10 +52,8 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
 }
 
 SceneFile made_ready(const std::string& path, Scene scene) {
-  // make_problem's messages begin with the scene's name; people look for the file's.
-  Scene named_after_file = scene;
-  named_after_file.name = path;
-  return {path, std::move(scene), make_problem(named_after_file)};
+  Problem problem = make_problem(scene, path);
+  return {path, std::move(scene), std::move(problem)};
 }
 
 }  // namespace

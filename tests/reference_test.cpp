@@ -54,9 +54,10 @@ TEST_P(NativeReference, EndsInTheSameShapes) {
       shape.col(i) = Eigen::Vector2d(point.at(0), point.at(1));
     }
     const Points final = rollout(*backend, std::stod(item.key())).final;
-    // Particle by particle, place included; ballistic launches ring, and the step resolves the
-    // ringing to about 1e-3.
-    EXPECT_LT(arrival_error(final, shape).mean, 2e-3 * problem.chain.length) << item.key();
+    // Particle by particle, place included. A ballistic launch stretches the segments and leaves
+    // them ringing for all of the flight; the default step resolves the slow part of that.
+    const double resolved = problem.launch == Launch::inextensible ? 2e-4 : 5e-3;
+    EXPECT_LT(arrival_error(final, shape).mean, resolved * problem.chain.length) << item.key();
   }
 }
 

@@ -36,7 +36,8 @@ struct Problem {
   Points aim_offset;
 };
 
-/// Throws InputError where a valid scene has no usable chain (a segment of no length).
-Problem make_problem(const Scene& scene);
+/// Throws InputError for a scene that is not valid, or has a segment of no length; `source` names
+/// the scene's file in the message, its name does without.
+Problem make_problem(const Scene& scene, std::string source = {});
 
 }  // namespace nuno

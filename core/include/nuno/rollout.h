@@ -48,6 +48,10 @@ Points disturbed(const Chain& chain, double size, unsigned seed = 0);
 /// the twins have nothing in common any more.
 double sensitivity(const Backend& backend, const Rollout& flight);
 
+/// Whether these positions [2 × N] are no cloth any more: a segment of a thousand times its length,
+/// or not finite. A rollout that gets there has diverged.
+bool is_torn(const Chain& chain, const Points& positions);
+
 /// The force that control effort is measured in [N]: a particle's weight m·g, or m·L/t₀² without
 /// gravity.
 double effort_unit(const Problem& problem);
