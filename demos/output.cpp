@@ -68,7 +68,8 @@ class TemporaryFile {
     }
     if (std::fclose(file_.release()) != 0) refuse(shown_, std::strerror(errno));
     std::error_code error;
-    fs::permissions(path_, fs::status(target_, error).permissions(), error);  // of what it replaces
+    const fs::file_status replaced = fs::status(target_, error);
+    if (fs::exists(replaced)) fs::permissions(path_, replaced.permissions(), error);
     fs::rename(path_, target_, error);
     if (error) refuse(shown_, error.message());
     path_.clear();
