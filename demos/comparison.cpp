@@ -18,7 +18,7 @@ std::vector<double> gains_of_curve(const Backend& first, const Backend& second) 
   const double scale = objective(first).gain_scale;
   const double low = range.smallest_gain * scale;
   const double high = std::max(
-      2 * low, std::min({range.largest_gain * scale, first.largest_gain(), second.largest_gain()}));
+      2 * low, std::min(objective(first).largest_gain, objective(second).largest_gain));
   std::vector<double> gains = {0};
   for (int i = 0; i < points_of_curve; ++i) {
     gains.push_back(low * std::pow(high / low, i / (points_of_curve - 1.0)));

@@ -17,7 +17,8 @@ struct Objective {
   std::function<std::vector<ErrorSample>(std::span<const double> gains)> samples;
   /// m/t₀² [N/m]: the gain whose oscillation turns by one radian until arrival.
   double gain_scale = 1;
-  /// Gains above it are not resolved by the engine's time step [N/m].
+  /// Where E(α) ends to make sense [N/m]: gains above are not resolved by the engine's time step
+  /// or, without damping (ζ < ½), pull the cloth through itself so often that E is noise.
   double largest_gain = std::numeric_limits<double>::infinity();
 };
 
@@ -61,7 +62,7 @@ OptimizeSummary steepest_descent(const Objective& objective,
 
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;   ///< of the scan, in gain scales, > 0
-  double largest_gain = 1e2;     ///< of the scan, in gain scales; cut to what the engine resolves
+  double largest_gain = 1e5;     ///< of the scan, in gain scales; cut to the objective's largest
   Index scan = 72;               ///< gains of the scan: 0 and log-spaced ones, ≥ 4
   Index brackets = 8;            ///< valleys that are refined, the deepest first, ≥ 1
   Index rounds = 6;              ///< of refinement, ≥ 1; by values, two rollouts each
