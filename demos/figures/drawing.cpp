@@ -98,7 +98,8 @@ std::string style_sheet() {
   css += ".figure .hair{stroke-width:.75;" + paint("stroke", "rule") + "}";
   css += ".figure .band{stroke-width:9;" + paint("stroke", "band") + "}";
   css += ".figure .soft{" + paint("stroke", "muted") + "}";
-  css += ".figure .thick{stroke-width:2.5}.figure .thin{stroke-width:1}";
+  css +=
+      ".figure .thick{stroke-width:2.5}.figure .thin{stroke-width:1}.figure .bold{stroke-width:5}";
   css += ".figure .dots{stroke-dasharray:.1 4}.figure .dashes{stroke-dasharray:5 4}";
   css += ".figure .short{stroke-dasharray:3 3}.figure .long{stroke-dasharray:9 4}";
   css += ".figure .ghost{opacity:.35}";

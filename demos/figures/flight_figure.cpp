@@ -68,6 +68,15 @@ bool same_initial(const Flight& a, const Flight& b) {
          a.positions[0].isApprox(b.positions[0], 1e-9);
 }
 
+/// Without a legend there is nothing to tell apart.
+std::size_t dashed(const std::vector<Flight>& flights, const FlightFigure& options) {
+  return options.plain ? 1 : flights.size();
+}
+
+std::string_view final_width(const FlightFigure& options) {
+  return options.plain ? "bold" : "thick";
+}
+
 std::string style_of(std::size_t i, std::size_t count, std::string_view more) {
   // One flight is the drawing's subject, not a series of it; later ones lie on those before.
   constexpr std::array<std::string_view, 4> dashes = {"", "dashes", "long", "short"};
@@ -122,14 +131,14 @@ void draw_ghosts(Drawing& drawing, const Plot& plot, const std::vector<Flight>& 
     for (int k = 1; k <= options.ghosts; ++k) {
       const double time = flight.times.back() * k / (options.ghosts + 1);
       const Points pose = positions_at(flight, time);
-      drawing.line(mapped(plot, pose), style_of(i, flights.size(), "ghost"));
+      drawing.line(mapped(plot, pose), style_of(i, dashed(flights, options), "ghost"));
       if (options.plain) continue;
       const Vector center = centroid(pose);
       const Vec at = plot.at(center(0), center(1));
       drawing.marker(Marker::circle, at, 4, "soft", Weight::light);
       if (i == 0 && flights.size() == 1) {
         const Vec end = plot.at(pose(0, pose.cols() - 1), pose(1, pose.cols() - 1));
-        drawing.label(end, fmt::format("{} s", shown(time)), "muted", plot.frame());
+        drawing.label(end, fmt::format("{:.2f} s", time), "muted", plot.frame());
       }
     }
   }
@@ -257,7 +266,8 @@ Drawing draw_flights(const std::vector<Flight>& flights, const FlightFigure& opt
   }
   draw_ghosts(drawing, plot, flights, options);
   for (std::size_t i = 0; i < flights.size(); ++i) {
-    drawing.line(mapped(plot, flights[i].positions.back()), style_of(i, flights.size(), "thick"));
+    drawing.line(mapped(plot, flights[i].positions.back()),
+                 style_of(i, dashed(flights, options), final_width(options)));
   }
   if (options.plain) return drawing;
 
@@ -273,7 +283,7 @@ Drawing draw_flights(const std::vector<Flight>& flights, const FlightFigure& opt
                 "strong", frame);
   drawing.label(place(first.target, 0), "target", "muted", frame);
   const std::vector<Vec> path = centroid_path(plot, first);
-  drawing.label(path[path.size() / 4], "centroid's path", "muted", frame);
+  drawing.label(path[path.size() / 4], "centroid’s path", "muted", frame);
   draw_arrival(drawing, {width - enlarged - 16, frame.top, enlarged, frame.height}, flights);
   return drawing;
 }
@@ -319,7 +329,7 @@ Drawing draw_moment(const std::vector<Flight>& flights, double time, const Fligh
   const double end = last_arrival(flights);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const Points pose = positions_at(flights[i], time);
-    drawing.line(mapped(plot, pose), style_of(i, flights.size(), "thick"));
+    drawing.line(mapped(plot, pose), style_of(i, dashed(flights, options), final_width(options)));
     if (!options.plain) draw_particles(drawing, plot, pose, i);
   }
   if (!options.plain) {
@@ -332,7 +342,7 @@ Drawing draw_moment(const std::vector<Flight>& flights, double time, const Fligh
 
 Drawing draw_motion(const std::vector<Flight>& flights, double speed, const FlightFigure& options) {
   auto [drawing, plot] = make_stage(flights, options);
-  if (options.ghosts > 0 && options.plain) draw_ghosts(drawing, plot, flights, options);
+  if (options.plain) draw_ghosts(drawing, plot, flights, options);
   const double end = last_arrival(flights);
   const double cycle = end / speed + rest_at_arrival;
   constexpr double frames_per_second = 30;
@@ -351,7 +361,7 @@ Drawing draw_motion(const std::vector<Flight>& flights, double speed, const Flig
       last = svg_points(pose);
       values += last + ";";
     }
-    const std::string style = style_of(i, flights.size(), "thick");
+    const std::string style = style_of(i, dashed(flights, options), final_width(options));
     drawing.raw(fmt::format("<polyline class=\"line {} still\" points=\"{}\"/>\n", style, last));
     drawing.raw(fmt::format(
         "<polyline class=\"line {} moving\" points=\"{}\"><animate attributeName=\"points\" "

@@ -72,27 +72,24 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
   }
 
   // No logarithm has a place for 0: launch only stands in a strip of its own.
-  constexpr double strip = 30;
+  constexpr double strip = 40;
   const Box frame = {58 + strip, y + 14, options.width - 58 - strip - 18,
                      options.height - y - 14 - 48};
   const Plot plot(frame, {"gain α [N/m]", low, high, Scale::logarithmic},
-                  {"", 0, top, Scale::linear});
-  plot.draw_axes(drawing);
+                  {"error at arrival [% of L]", 0, top, Scale::linear});
   const double zero = frame.left - strip + 8;
+  plot.draw_axes(drawing, strip + 7);
   const auto at = [&](double gain, double error) {
     Vec place = plot.at(std::max(gain, low), std::min(percent * error, 2 * top));
     if (gain < low) place.x = gain <= 0 ? zero : frame.left;
     return place;
   };
-  drawing.rectangle({zero - 12, frame.top, 26, frame.height + 24}, "paper");
   for (const Tick& tick : ticks(plot.y(), static_cast<int>(frame.height / 40))) {
     const double height = plot.at(low, tick.value).y;
     drawing.line({zero - 8, height}, {zero + 8, height}, "grid");
-    drawing.text({zero - 15, height + 4}, tick.label, Anchor::end, "muted");
   }
   drawing.line({zero - 8, frame.bottom()}, {zero + 8, frame.bottom()}, "rule");
   drawing.text({zero, frame.bottom() + 18}, "0", Anchor::middle, "muted");
-  drawing.vertical_text({15, frame.top + frame.height / 2}, "error at arrival [% of L]");
 
   for (std::size_t i = 0; i < curves.size(); ++i) {
     std::vector<Vec> part;
@@ -165,7 +162,8 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
     // What a script needs to place a gain: the frame and its range.
     drawing.raw(fmt::format(
         "<g class=\"cursor\" data-left=\"{:.6g}\" data-right=\"{:.6g}\" data-zero=\"{:.6g}\" "
-        "data-low=\"{}\" data-high=\"{}\"><line class=\"line\" x1=\"0\" x2=\"0\" y1=\"{:.6g}\" "
+        "data-low=\"{}\" data-high=\"{}\"><line class=\"line thin\" x1=\"0\" x2=\"0\" "
+        "y1=\"{:.6g}\" "
         "y2=\"{:.6g}\"/><path class=\"dot\" d=\"M0 {:.6g}l5 -8h-10z\"/></g>\n",
         frame.left, frame.right(), zero, low, high, frame.top, frame.bottom(), frame.top + 1));
   }

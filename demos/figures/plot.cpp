@@ -83,7 +83,7 @@ Vec Plot::at(double x, double y) const {
           frame_.bottom() - fraction(y_, y) * frame_.height};
 }
 
-void Plot::draw_axes(Drawing& drawing) const {
+void Plot::draw_axes(Drawing& drawing, double left) const {
   for (const Tick& tick : ticks(x_, static_cast<int>(frame_.width / 60))) {
     const double x = at(tick.value, y_.low).x;
     if (tick.label.empty()) {
@@ -97,11 +97,11 @@ void Plot::draw_axes(Drawing& drawing) const {
     const double y = at(x_.low, tick.value).y;
     if (tick.label.empty()) continue;
     drawing.line({frame_.left, y}, {frame_.right(), y}, "grid");
-    drawing.text({frame_.left - 7, y + 4}, tick.label, Anchor::end, "muted");
+    drawing.text({frame_.left - left, y + 4}, tick.label, Anchor::end, "muted");
   }
   drawing.line({frame_.left, frame_.bottom()}, {frame_.right(), frame_.bottom()}, "rule");
   drawing.text({frame_.left + frame_.width / 2, frame_.bottom() + 35}, x_.title, Anchor::middle);
-  drawing.vertical_text({frame_.left - 38, frame_.top + frame_.height / 2}, y_.title);
+  drawing.vertical_text({frame_.left - left - 31, frame_.top + frame_.height / 2}, y_.title);
 }
 
 Plot Plot::with_equal_scales(const Box& frame, Axis x, Axis y) {

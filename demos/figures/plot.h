@@ -39,8 +39,8 @@ class Plot {
 
   Vec at(double x, double y) const;
 
-  /// Grid, ticks, numbers, titles.
-  void draw_axes(Drawing& drawing) const;
+  /// Grid, ticks, numbers, titles; `left` is how far left of the frame y's numbers stand [px].
+  void draw_axes(Drawing& drawing, double left = 7) const;
 
   /// Makes the ranges larger about their centres until a metre is as long in x as in y.
   static Plot with_equal_scales(const Box& frame, Axis x, Axis y);

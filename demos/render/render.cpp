@@ -43,6 +43,7 @@ std::optional<Flight> thrown(const std::string& path) {
 FlightFigure figure_of(const std::vector<Flight>& flights, bool plain) {
   FlightFigure figure;
   figure.plain = plain;
+  if (plain) figure.ghosts = 3;
   const Flight& first = flights.front();
   if (flights.size() == 1) {
     figure.title = first.scene;

@@ -170,16 +170,16 @@ value="0.25">× 0.25</option><option value="0.5">× 0.5</option><option value="1
 <div><dt>{key_b}{engine_b}, <span data-part="what-1"></span></dt><dd data-part="error-1"></dd></div>
 <div><dt>engines apart</dt><dd data-part="apart-now"></dd></div>
 </dl>
+<h3 class="below">Engines apart on the way, mean [% of L]</h3>
+<div data-part="apart"></div>
+<button type="button" class="link" data-part="most"></button>
+<p class="note print" data-part="most-print"></p>
 </div>
 <div>
 <h3>Error at arrival, by gain</h3>
 {figure}
 <fieldset class="gains" data-part="gains"><legend>Gain of the flights shown</legend>
 {gains}</fieldset>
-<h3>Engines apart on the way, mean [% of L]</h3>
-<div data-part="apart"></div>
-<button type="button" class="link" data-part="most"></button>
-<p class="note print" data-part="most-print"></p>
 </div>
 </div>
 </section>

@@ -220,7 +220,7 @@ class SceneView {
   drawApart() {
     const box = this.find('apart');
     box.replaceChildren();
-    const width = this.find('stage').clientWidth;
+    const width = box.clientWidth;
     const frame = { left: 44, right: width - 12, top: 12, bottom: 62 };
     const svg = element(box, 'svg', {
       class: 'figure', viewBox: `0 0 ${width} 96`, width, height: 96, role: 'img',
