@@ -1,0 +1,33 @@
+#pragma once
+
+#include <nuno/optimize.h>
+#include <nuno/rollout.h>
+
+#include <optional>
+
+namespace nuno {
+
+/// What a gain buys and what it costs.
+struct TradeOffPoint {
+  double gain = 0;    ///< α [N/m]
+  double error = 0;   ///< E(α) [m]
+  double effort = 0;  ///< control effort, see Rollout
+};
+
+/// The best trades of error for effort: launch only, and the gains (log-spaced over the objective's
+/// range, `count` of them) that no other beats in both. Ascending in effort, descending in error;
+/// rollouts that diverge are left out.
+std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count = 64);
+
+/// The point of least effort whose error is at most `error_limit` [m], between the points of
+/// `curve` too; nothing if no point is as near.
+std::optional<TradeOffPoint> least_effort(const Backend& backend,
+                                          const std::vector<TradeOffPoint>& curve,
+                                          double error_limit);
+
+/// The point of least error whose effort is at most `effort_limit`, between the points of `curve`
+/// too.
+TradeOffPoint least_error(const Backend& backend, const std::vector<TradeOffPoint>& curve,
+                          double effort_limit);
+
+}  // namespace nuno

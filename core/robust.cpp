@@ -1,0 +1,31 @@
+#include <nuno/robust.h>
+
+#include <nuno/rollout.h>
+
+#include <cassert>
+
+namespace nuno {
+
+Objective robust_objective(const Backend& backend, const RobustOptions& options) {
+  assert(options.size > 0 && options.disturbances >= 1);
+  const Chain& chain = backend.problem().chain;
+  std::vector<Points> starts = {chain.initial};
+  for (unsigned seed = 1; seed <= options.disturbances; ++seed) {
+    starts.push_back(disturbed(chain, options.size, seed));
+  }
+  Objective result = objective(backend);
+  result.samples = nullptr;
+  result.errors = [&backend, starts = std::move(starts)](std::span<const double> gains) {
+    std::vector<double> mean(gains.size(), 0.0);
+    for (const Points& start : starts) {
+      const std::vector<double> errors = backend.errors(gains, start);
+      for (std::size_t i = 0; i < gains.size(); ++i) {
+        mean[i] += errors[i] / static_cast<double>(starts.size());
+      }
+    }
+    return mean;
+  };
+  return result;
+}
+
+}  // namespace nuno
