@@ -186,7 +186,7 @@ struct Bracket {
 void search_with_slopes(const Objective& objective, const GlobalSearchOptions& options,
                         OptimizeSummary& summary) {
   const auto sample = [&](std::span<const double> gains) {
-    const std::vector<ErrorSample> samples = objective.samples(gains);
+    std::vector<ErrorSample> samples = objective.samples(gains);
     summary.evaluations += static_cast<Index>(gains.size());
     for (std::size_t i = 0; i < gains.size(); ++i) {
       summary.history.push_back({gains[i], samples[i].error});
