@@ -33,9 +33,9 @@ std::unique_ptr<Backend> make_box2d(const Problem& problem, std::optional<double
 
 inline const Engine native_engine = {"native", make_native, 1e-11, false};
 inline const Engine box2d_weld_engine = {"box2d_soft_weld", make_box2d<box2d::Hinge::soft_weld>,
-                                         1e-4, true};
+                                         3e-4, true};
 inline const Engine box2d_pair_engine = {"box2d_spring_pair", make_box2d<box2d::Hinge::spring_pair>,
-                                         1e-4, true};
+                                         3e-4, true};
 
 inline std::ostream& operator<<(std::ostream& out, const Engine& engine) {
   return out << engine.name;
