@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -19,8 +21,12 @@
 #include <string_view>
 #include <utility>
 
+#include "../commands.h"
+#include "../comparison.h"
 #include "../engines.h"
 #include "../json_files.h"
+#include "../output.h"
+#include "../report/report.h"
 #include "../rollouts.h"
 #include "flight.h"
 
@@ -39,6 +45,7 @@ constexpr double most_particle_steps_box2d = 2e7;
 constexpr Index most_frames = 2000;
 constexpr double most_points_in_frames = 2e6;
 constexpr double most_flights_after = 10;  // seconds after arrival, in arrival times
+constexpr double longest_film = 10;        // seconds
 constexpr std::size_t longest_page = 64;
 
 std::string dump(const Json& value) {
@@ -279,9 +286,72 @@ Answer result_answer(const std::string& body, const Options& options, const Turn
   std::optional<Optimization> optimization;
   if (done.found) optimization = Optimization{options.optimizer, *done.found};
   return {.body = printed([&](std::FILE* file) {
-            write_result(file, done.file.scene.name, *done.backend, done.flight, optimization);
+            write_result(file, done.file.scene.name, *done.backend, done.flight,
+                         bounded_sensitivity(*done.backend, done.flight), optimization);
           }),
           .file_name = "result.json"};
+}
+
+/// Both engines on the scene, as the page that `nuno compare` writes.
+Answer report_answer(const std::string& body, const Options& options) {
+  const SceneFile file = parse_scene_file(body, scene_name);
+  const auto native = make_backend("native", file);
+  const auto box2d = make_backend("box2d", file);
+  require_quick(file, *native, options);
+  require_quick(file, *box2d, options);
+  const Comparison comparison = compare_engines(file.scene.name, *native, *box2d);
+  clear_progress();
+  if (comparison.divergence) {
+    const auto& [backend, flight] = *comparison.divergence;
+    return diverged_answer(file, backend == "native" ? *native : *box2d, flight);
+  }
+  return {.type = "text/html; charset=utf-8",
+          .body = report_page({make_report_scene(comparison, *native, *box2d)}),
+          .file_name = "report.html"};
+}
+
+/// A folder of our own that goes with this object.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "nuno-studio-XXXXXX").string();
+    if (!mkdtemp(name.data())) throw OutputError(name + ": cannot be written");
+    path_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string file(const char* name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// What `nuno render` makes of the result.
+Answer film_answer(const std::string& body, const Options& options, const Turn& turn) {
+  const Answer result = result_answer(body, options, turn);
+  if (result.status != 200) return result;
+  if (const double time = parse_scene_file(body, scene_name).scene.arrival_time;
+      time > longest_film) {
+    throw InputError(
+        fmt::format("{}: /arrival_time: {} is not <= {}, the longest film of the studio",
+                    scene_name, time, longest_film));
+  }
+  const TemporaryFolder folder;
+  const std::string result_path = folder.file("result.json"), film = folder.file("film.mp4");
+  write_output(result_path, [&](std::FILE* file) {
+    std::fwrite(result.body.data(), 1, result.body.size(), file);
+  });
+  turn.check();
+  render({.results = {result_path}, .out = film});
+  std::ifstream file(film, std::ios::binary);
+  return {.type = "video/mp4",
+          .body = {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()},
+          .file_name = "film.mp4"};
 }
 
 Answer scene_answer(const std::string& body) {
@@ -304,8 +374,8 @@ const std::set<std::string_view> of_optimize = {"page", "backend", "optimizer", 
 const std::set<std::string_view> of_simulate = {"page", "backend", "alpha", "frames", "after"};
 const std::set<std::string_view> of_result = {"page", "backend", "optimizer", "alpha"};
 
-constexpr std::array<std::string_view, 4> posts = {"/api/optimize", "/api/simulate", "/api/result",
-                                                   "/api/scene"};
+constexpr std::array<std::string_view, 6> posts = {"/api/optimize", "/api/simulate", "/api/result",
+                                                   "/api/scene",    "/api/report",   "/api/film"};
 
 }  // namespace
 
@@ -345,6 +415,13 @@ Answer Api::post(const std::string& path, const Parameters& parameters, const st
       page = options.page;
       turn = turns_.begin(page);
       answer = result_answer(body, options, turn);
+    } else if (path == "/api/film") {
+      const Options options = read_options(parameters, of_result);
+      page = options.page;
+      turn = turns_.begin(page);
+      answer = film_answer(body, options, turn);
+    } else if (path == "/api/report") {
+      answer = report_answer(body, read_options(parameters, {"page", "backend", "alpha"}));
     } else if (path == "/" || path == "/api/about") {
       answer = refusal(405, path + ": takes GET");
     } else {
@@ -352,6 +429,8 @@ Answer Api::post(const std::string& path, const Parameters& parameters, const st
     }
   } catch (const InputError& error) {
     answer = refusal(400, error.what());
+  } catch (const OutputError& error) {
+    answer = refusal(503, error.what());
   } catch (const Cancelled&) {
     answer = refusal(409, "a newer request of this page took its place");
   } catch (const std::bad_alloc&) {

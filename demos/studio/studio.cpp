@@ -215,9 +215,7 @@ void open_browser(const std::string& address) {
   }
   pid_t child = 0;
   // Without an opener the printed address does.
-  if (posix_spawnp(&child, opener, &quiet, nullptr, arguments.data(), environ) == 0) {
-    std::signal(SIGCHLD, SIG_IGN);
-  }
+  posix_spawnp(&child, opener, &quiet, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&quiet);
 }
 

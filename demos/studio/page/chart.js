@@ -14,17 +14,20 @@ export function minima(history) {
     const rises = right >= history.length || history[right].error > e;
     if (falls && rises && left === i - 1) found.push(history[i]);
   }
-  // A refined valley is sampled to the last digits, where noise has minima of its own.
-  const apart = [];
+  // A dip is one if the way to the next one leads over something: a refined valley is sampled to the
+  // last digits, where noise has minima of its own.
+  const dips = [];
   for (const m of found) {
-    const last = apart[apart.length - 1];
-    if (last && m.alpha - last.alpha < 0.02 * m.alpha) {
-      if (m.error < last.error) apart[apart.length - 1] = m;
+    const last = dips[dips.length - 1];
+    const between = last ? history.filter((s) => s.alpha > last.alpha && s.alpha < m.alpha) : [];
+    const pass = Math.max(0, ...between.map((s) => s.error));
+    if (last && pass < 1.01 * Math.max(last.error, m.error)) {
+      if (m.error < last.error) dips[dips.length - 1] = m;
     } else {
-      apart.push(m);
+      dips.push(m);
     }
   }
-  return apart;
+  return dips;
 }
 
 export class Chart {
@@ -155,7 +158,7 @@ export class Chart {
       ctx.moveTo(Math.round(at) + 0.5, top);
       ctx.lineTo(Math.round(at) + 0.5, bottom);
       ctx.stroke();
-      if (at < right - 16) ctx.fillText(decade >= -3 && decade < 4 ? String(Number((10 ** decade).toPrecision(1))) : `1e${decade}`, at, bottom + 6);
+      if (at < right - 16) ctx.fillText(decade >= -3 && decade < 4 ? String(Number((10 ** decade).toPrecision(1))) : `1e${decade}`.replace('-', '−'), at, bottom + 6);
     }
     ctx.textAlign = 'right';
     ctx.fillText('N/m', this.width - 2, bottom + 6);

@@ -37,8 +37,8 @@ const app = {
 };
 
 const channels = { native: new Channel('a'), box2d: new Channel('b'), curve: new Channel('c'), file: new Channel('f') };
-const latencies = []; // pointer move → new optimum drawn [ms]
-let moved_at = null; // of the pointer move whose optimum is not drawn yet
+const latencies = []; // of every pointer move: until an optimum that knows of it is drawn [ms]
+let moves = []; // times of the moves whose optimum is not drawn yet
 
 const scene = () => app.doc.scene;
 const body = () => JSON.stringify(scene());
@@ -52,6 +52,8 @@ const digits = (x, n = 3) => {
   if (size >= 1e5 || size < 1e-4) return x.toExponential(1).replace('e-', 'e−').replace('e+', 'e');
   return Number(x.toPrecision(n)).toString();
 };
+// The same width while it changes.
+const steady = (x) => (x >= 0.01 && x < 1000 ? Number(x.toPrecision(3)).toFixed(Math.max(0, 2 - Math.floor(Math.log10(x)))) : digits(x));
 const metres = (x) => (x < 1e-6 ? '< 1 µm' : x < 1e-3 ? `${digits(1e6 * x, 2)} µm` : x < 1 ? `${digits(1e3 * x)} mm` : `${digits(x)} m`);
 const seconds = (s) => (s < 1 ? `${digits(1e3 * s, 2)} ms` : `${digits(s, 2)} s`);
 const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
@@ -60,9 +62,9 @@ const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 
 // The scene has changed; live: it is still changing. `stamp` is the time of the event behind it.
 function changed(live, stamp = null) {
-  if (live) moved_at ??= stamp ?? performance.now();
+  if (live) moves.push(stamp ?? performance.now());
   else {
-    moved_at = null;
+    moves = [];
     app.doc.commit();
     update_fields();
   }
@@ -80,7 +82,7 @@ function request(live) {
   const text = body();
   const frames = frame_count(live);
   const after = live ? 0 : flight_after * scene().arrival_time;
-  const stamp = live ? moved_at : null;
+  const latest_move = live ? moves[moves.length - 1] : undefined;
   const failed = (engine) => (error) => {
     trouble(error.message);
     if (app.results[engine]) app.results[engine].stale = true;
@@ -96,10 +98,11 @@ function request(live) {
     result.key = text;
     if (flight.optimization) take_curve(engine, flight);
     show();
-    if (engine === 'native' && stamp !== null) {
-      latencies.push(performance.now() - stamp);
-      if (latencies.length > 2000) latencies.shift();
-      if (moved_at === stamp) moved_at = null;
+    if (engine === 'native' && latest_move !== undefined) {
+      const drawn = performance.now();
+      latencies.push(...moves.filter((time) => time <= latest_move).map((time) => drawn - time));
+      moves = moves.filter((time) => time > latest_move);
+      latencies.splice(0, latencies.length - 2000);
     }
     settle();
   };
@@ -185,7 +188,10 @@ function announce() {
   if (text !== announced) $('status').textContent = announced = text;
 }
 
-function trouble(message) {
+let note_until = 0; // a note about the scene itself stays for a while
+function trouble(message, stay = 0) {
+  if (!message && performance.now() < note_until) return;
+  note_until = performance.now() + stay;
   $('trouble').hidden = !message;
   if (message) $('trouble').textContent = message.replace(/^scene\.json: /, '');
 }
@@ -251,6 +257,7 @@ function redraw() {
     views, initial, target, fitted: fitted_target(), selected: app.selected,
     tool: app.playing ? null : app.tool, vertex: app.vertex,
     stroke: editor.gesture?.kind === 'draw' ? editor.gesture.points : null,
+    forces: app.forces ? (scene().gravity > 0 ? 'a particle’s weight' : 'm·L/t₀²') : null,
   }, colors);
   show_hint();
   show_clock();
@@ -294,9 +301,9 @@ function score(engine) {
   const { flight } = result;
   const { error } = flight;
   const effort = scene().gravity > 0 ? '× weight' : '× m·L/t₀²';
-  const stale = result.stale || (channels[engine].busy && result.key !== app.doc.committed && !moved_at);
+  const stale = result.stale || (channels[engine].busy && result.key !== app.doc.committed && !moves.length);
   return `<div class="score${stale ? ' stale' : ''}">${who}
-    <div class="big" data-engine="${engine}">${digits(100 * error.relative)} <small>%</small></div>
+    <div class="big" data-engine="${engine}">${steady(100 * error.relative)} <small>%</small></div>
     <div class="what">of the cloth's length off the target, on average</div>
     <dl><dt>mean error</dt><dd>${metres(error.mean)}</dd>
     <dt>worst particle</dt><dd>${metres(error.max)}</dd>
@@ -568,7 +575,7 @@ const actions = {
 function step_history(done) {
   if (!done) return;
   app.vertex = null;
-  moved_at = null;
+  moves = [];
   update_fields();
   request(false);
   redraw();
@@ -615,7 +622,7 @@ function use(new_scene, text_of_problem) {
   select('target');
   set_tool('move');
   set_engine(app.engine);
-  if (text_of_problem) trouble(text_of_problem);
+  if (text_of_problem) trouble(text_of_problem, 8000);
   channels_idle_then(() => { fit_view(); redraw(); });
 }
 

@@ -4,6 +4,7 @@ import { bounds } from './geometry.js';
 
 const handle_size = 5;
 const force_pixels = 34; // of an arrow as large as a particle's weight
+const longest_force = 160; // pixels
 
 export class View {
   constructor(canvas) {
@@ -28,7 +29,7 @@ export class View {
   // Where the things below the toolbars and above the hint have their room.
   get room() {
     const narrow = this.width < 640;
-    return { left: narrow ? 56 : 76, right: narrow ? 16 : 36, top: narrow ? 84 : 92, bottom: 52 };
+    return { left: narrow ? 60 : 84, right: narrow ? 30 : 36, top: narrow ? 84 : 92, bottom: 84 };
   }
 
   to_screen([x, y]) {
@@ -80,10 +81,18 @@ export class View {
         ctx.font = '600 12px system-ui, sans-serif';
         ctx.fillStyle = view.cloths[0]?.color ?? colors.quiet;
         ctx.textAlign = 'center';
-        ctx.fillText(view.title, this.view_width / 2, this.height - 58);
+        ctx.fillText(view.title, this.view_width / 2, this.height - 62);
       }
       ctx.restore();
     });
+    if (what.forces) {
+      const y = this.height - 64;
+      this.arrow(84, y, force_pixels, 0, colors.force);
+      ctx.font = '12px system-ui, sans-serif';
+      ctx.textAlign = 'left';
+      ctx.textBaseline = 'middle';
+      ctx.fillText(what.forces, 84 + force_pixels + 8, y);
+    }
     if (this.views > 1) {
       ctx.fillStyle = colors.line;
       ctx.fillRect(Math.round(this.view_width), 0, 1, this.height);
@@ -125,7 +134,7 @@ export class View {
       ctx.fillStyle = colors.faint;
       ctx.textAlign = 'right';
       ctx.textBaseline = 'bottom';
-      if (at > 100 && at < this.height - 22) ctx.fillText(name(i * step) + ' m', this.view_width - 4, at - 2);
+      if (at > 100 && at < this.height - 30) ctx.fillText(name(i * step) + ' m', this.view_width - 4, at - 2);
     }
   }
 
@@ -270,30 +279,31 @@ export class View {
   }
 
   forces(cloth, colors) {
-    const ctx = this.context;
-    ctx.strokeStyle = ctx.fillStyle = colors.force;
-    ctx.lineWidth = 1.5;
-    ctx.lineCap = 'butt';
     cloth.shape.forEach((p, i) => {
       const [x, y] = this.to_screen(p);
-      let fx = (cloth.forces[i][0] / cloth.effort_unit) * force_pixels;
-      let fy = (-cloth.forces[i][1] / cloth.effort_unit) * force_pixels;
+      const [fx, fy] = cloth.forces[i].map((f) => (f / cloth.effort_unit) * force_pixels);
       const size = Math.hypot(fx, fy);
-      if (size < 2) return;
-      const shown = Math.min(size, 160);
-      fx *= shown / size;
-      fy *= shown / size;
-      const head = Math.min(6, shown / 2), ux = fx / shown, uy = fy / shown;
-      ctx.beginPath();
-      ctx.moveTo(x, y);
-      ctx.lineTo(x + fx - ux * head, y + fy - uy * head);
-      ctx.stroke();
-      ctx.beginPath();
-      ctx.moveTo(x + fx, y + fy);
-      ctx.lineTo(x + fx - ux * head - uy * head * 0.55, y + fy - uy * head + ux * head * 0.55);
-      ctx.lineTo(x + fx - ux * head + uy * head * 0.55, y + fy - uy * head - ux * head * 0.55);
-      ctx.fill();
+      const shown = Math.min(size, longest_force) / size;
+      if (size >= 2) this.arrow(x, y, shown * fx, -shown * fy, colors.force);
     });
+  }
+
+  arrow(x, y, dx, dy, color) {
+    const ctx = this.context;
+    const size = Math.hypot(dx, dy), ux = dx / size, uy = dy / size, head = Math.min(6, size / 2);
+    const [bx, by] = [x + dx - ux * head, y + dy - uy * head];
+    ctx.strokeStyle = ctx.fillStyle = color;
+    ctx.lineWidth = 1.25;
+    ctx.lineCap = 'butt';
+    ctx.beginPath();
+    ctx.moveTo(x, y);
+    ctx.lineTo(bx, by);
+    ctx.stroke();
+    ctx.beginPath();
+    ctx.moveTo(x + dx, y + dy);
+    ctx.lineTo(bx - uy * head * 0.5, by + ux * head * 0.5);
+    ctx.lineTo(bx + uy * head * 0.5, by - ux * head * 0.5);
+    ctx.fill();
   }
 }
 
