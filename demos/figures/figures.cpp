@@ -22,7 +22,7 @@ using namespace figures;
 
 SceneFile own_scene(std::string_view json, const std::string& name) {
   SceneFile file{name, parse_scene(std::string(json), name), {}};
-  file.problem = make_problem(file.scene, name);
+  file.problem = make_problem(file.scene);
   return file;
 }
 

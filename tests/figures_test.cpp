@@ -1,0 +1,264 @@
+// The pictures that the program makes: files that any reader takes, and what they must show.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+bool is_installed(const std::string& program) {
+  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+/// A folder of its own for every test.
+class Pictures : public testing::Test {
+ protected:
+  Pictures() {
+    std::string pattern = (fs::temp_directory_path() / "nuno-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~Pictures() override { fs::remove_all(folder_); }
+
+  fs::path in_folder(const std::string& name) const { return folder_ / name; }
+
+  /// The words are our own; no shell meets a stranger's text here.
+  Outcome run(const std::string& command) const {
+    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
+    const int status =
+        std::system((command + " >" + out.string() + " 2>" + err.string() + " </dev/null").c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+  }
+  Outcome nuno(const std::string& arguments) const { return run(NUNO_PROGRAM " " + arguments); }
+
+  /// A small throw of half a second.
+  std::string result(const std::string& backend = "native") const {
+    const fs::path scene = in_folder("throw <&>.json");
+    std::ofstream(scene) << R"({"nuno_scene": 1, "particles": 8, "arrival_time": 0.5,
+      "initial": [[0, 1], [1, 1]], "target": [[2, 1], [2.5, 1.3], [3, 1]]})";
+    const std::string file = in_folder(backend + ".json").string();
+    const Outcome made = nuno("simulate '" + scene.string() + "' --alpha 0.05 --backend " +
+                              backend + " --out " + file);
+    EXPECT_EQ(made.status, 0) << made.err;
+    return file;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+/// Why a text is no XML that an SVG reader takes; empty if it is. Knows what our files use: tags,
+/// attributes in double quotes, four entities.
+std::string xml_mistake(const std::string& text) {
+  std::vector<std::string> open;
+  std::size_t at = 0;
+  while (at < text.size()) {
+    if (text[at] != '<') {
+      const std::string entity = text[at] == '&' ? text.substr(at, text.find(';', at) - at) : "";
+      if (text[at] == '&' && entity != "&amp" && entity != "&lt" && entity != "&gt" &&
+          entity != "&quot") {
+        return "a stray & at " + std::to_string(at);
+      }
+      ++at;
+      continue;
+    }
+    const std::size_t end = text.find('>', at);
+    if (end == std::string::npos) return "a tag without an end";
+    std::string inside = text.substr(at + 1, end - at - 1);
+    if (inside.find('<') != std::string::npos) return "a tag in a tag: " + inside.substr(0, 80);
+    if (std::ranges::count(inside, '"') % 2 != 0) return "an open quote: " + inside.substr(0, 80);
+    const bool closes = inside.starts_with("/"), empty = inside.ends_with("/");
+    const std::string name = inside.substr(closes, inside.find_first_of(" /", closes) - closes);
+    if (closes) {
+      if (open.empty() || open.back() != name) return "</" + name + "> closes nothing";
+      open.pop_back();
+    } else if (!empty) {
+      open.push_back(name);
+    }
+    at = end + 1;
+  }
+  return open.empty() ? "" : "<" + open.back() + "> stays open";
+}
+
+bool is_svg(const std::string& text) {
+  return text.starts_with("<svg ") && xml_mistake(text).empty();
+}
+
+/// Every number of a text, in order.
+std::vector<double> numbers(const std::string& text) {
+  std::vector<double> result;
+  for (const char* at = text.c_str(); *at != '\0';) {
+    char* end = nullptr;
+    const bool starts = std::isdigit(static_cast<unsigned char>(*at)) != 0;
+    const double value = starts ? std::strtod(at, &end) : 0;
+    if (starts) result.push_back(value);
+    at = starts ? end : at + 1;
+  }
+  return result;
+}
+
+TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
+  const Outcome made = nuno("figures --out " + in_folder("figures").string());
+  if (is_installed("rsvg-convert")) {
+    EXPECT_EQ(made.status, 0) << made.err;
+  }
+  for (const std::string name : {"figure-5", "figure-6", "figure-7", "figure-8"}) {
+    const std::string svg = read_text(in_folder("figures") / (name + ".svg"));
+    EXPECT_TRUE(is_svg(svg)) << name << ": " << xml_mistake(svg);
+    EXPECT_NE(svg.find("prefers-color-scheme:dark"), std::string::npos) << name;
+    if (!is_installed("rsvg-convert")) continue;
+    const std::string png = read_text(in_folder("figures") / (name + ".png"));
+    ASSERT_GT(png.size(), 1000u);
+    EXPECT_TRUE(png.starts_with("\x89PNG")) << name;
+    // The width in the header, big-endian: twice the drawing's 800.
+    EXPECT_EQ(static_cast<unsigned char>(png[18]) * 256 + static_cast<unsigned char>(png[19]),
+              1600);
+  }
+  const auto figure = [&](int n) {
+    return read_text(in_folder("figures") / ("figure-" + std::to_string(n) + ".svg"));
+  };
+  for (const std::string text : {"gain α [N/m]", "error at arrival [% of L]", "launch only",
+                                 "best, both engines: α = 0.397 N/m", "local minimum",
+                                 // The paper's first valley.
+                                 "the descent ends in the first valley: α = 0.0181 N/m, 2.17 %"}) {
+    EXPECT_NE(figure(5).find(text), std::string::npos) << text;
+  }
+  for (const int n : {6, 7, 8}) {
+    for (const std::string text : {"x [m]", "y [m]", "initial", "target", "final", "centroid"}) {
+      EXPECT_NE(figure(n).find(text), std::string::npos) << n << ": " << text;
+    }
+  }
+  EXPECT_NE(figure(6).find("32 particles, α = 0 N/m"), std::string::npos);
+  EXPECT_NE(figure(7).find("32 particles, α = 0.0181 N/m"), std::string::npos);
+  EXPECT_NE(figure(8).find("64 particles"), std::string::npos);
+}
+
+TEST_F(Pictures, AStillAndAMovingSvgOfSeveralResultsAreWellFormed) {
+  const std::string results = result("native") + " " + result("box2d");
+  for (const std::string more : {"", " --still", " --plain", " --plain --still", " --speed 0.25"}) {
+    const fs::path file = in_folder("out.svg");
+    const Outcome made = nuno("render " + results + " --out " + file.string() + more);
+    EXPECT_EQ(made.status, 0) << made.err;
+    const std::string svg = read_text(file);
+    EXPECT_TRUE(is_svg(svg)) << more << ": " << xml_mistake(svg);
+    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_EQ(svg.find("<animate") != std::string::npos, more.find("still") == std::string::npos);
+    if (more.find("plain") == std::string::npos) {
+      EXPECT_NE(svg.find("throw &lt;&amp;&gt;"), std::string::npos);
+      EXPECT_NE(svg.find("Box2D"), std::string::npos);
+    }
+  }
+}
+
+TEST_F(Pictures, AFilmHasAllItsFramesAndLastsAsLongAsTheFlightAndARest) {
+  for (const std::string program : {"ffmpeg", "ffprobe", "rsvg-convert"}) {
+    if (!is_installed(program)) GTEST_SKIP() << program << " is not installed";
+  }
+  const std::string file = result();
+  constexpr double shown = 0.5 + 1.5;  // flight, rest at arrival [s]
+  for (const auto& [extension, rate] :
+       std::vector<std::pair<std::string, int>>{{"mp4", 60}, {"gif", 25}, {"webm", 60}}) {
+    const std::string film = in_folder("film." + extension).string();
+    const Outcome made = nuno("render " + file + " --out " + film);
+    ASSERT_EQ(made.status, 0) << made.err;
+    const Outcome probe =
+        run("ffprobe -v error -select_streams v -count_frames -show_entries "
+            "stream=nb_read_frames,width,height:format=duration -of json " +
+            film);
+    ASSERT_EQ(probe.status, 0) << probe.err;
+    const Json found = Json::parse(probe.out);
+    const Json stream = found["streams"][0];
+    EXPECT_EQ(std::stoi(stream["nb_read_frames"].get<std::string>()), std::lround(shown * rate))
+        << extension;
+    EXPECT_NEAR(std::stod(found["format"]["duration"].get<std::string>()), shown, 1.0 / rate)
+        << extension;
+    EXPECT_EQ(stream["width"], extension == "gif" ? 800 : 1600);
+  }
+}
+
+TEST_F(Pictures, WithoutItsProgramsAFilmSaysWhatToInstall) {
+  const std::string film = in_folder("film.mp4").string();
+  const Outcome made = run("PATH=/nowhere " NUNO_PROGRAM " render " + result() + " --out " + film);
+  EXPECT_EQ(made.status, 1);
+  EXPECT_NE(made.err.find("apt-get install"), std::string::npos) << made.err;
+  EXPECT_EQ(std::ranges::count(made.err, '\n'), 1) << made.err;
+  EXPECT_FALSE(fs::exists(film));
+}
+
+TEST_F(Pictures, ABadResultIsRefusedInOneLineThatSaysWhereAndWhy) {
+  const Json right = Json::parse(read_text(result()));
+  struct Bad {
+    std::string pointer;
+    Json value;
+    std::string message;
+  };
+  for (const Bad& bad : std::vector<Bad>{
+           {"/nuno_result", 2, "/nuno_result: 2 is not 1"},
+           {"/alpha", "much", "/alpha: \"much\" is not a number"},
+           {"/alpha", -1, "/alpha: -1 is not >= 0"},
+           {"/cloth_length", 0, "/cloth_length: 0 is not > 0"},
+           {"/target", 3, "/target: 3 is not a list"},
+           {"/target/1", {1, 2, 3}, "/target/1: [1,2,3] is not a point [x, y]"},
+           {"/final/2/0", nullptr, "/final/2/0: null is not a number"},
+           {"/frames/times/1", 0, "/frames/times/1: 0 is not later than the frame before"},
+           {"/frames/times", {0, 1}, "/frames/positions: "},
+           {"/frames/positions/3", {{0, 1}, {1, 1}}, "/frames/positions/3: 2 points are not 8"},
+           {"/frames/positions/3/1/1", 1e300, "/frames/positions/3/1/1: 1e+300 is not within"},
+           {"/error", Json::array(), "/error: [] is not an object"},
+       }) {
+    Json wrong = right;
+    wrong[Json::json_pointer(bad.pointer)] = bad.value;
+    const std::string file = in_folder("bad.json").string();
+    std::ofstream(file) << wrong.dump();
+    const Outcome made = nuno("render " + file + " --out " + in_folder("bad.svg").string());
+    EXPECT_EQ(made.status, 2) << bad.message;
+    EXPECT_TRUE(made.err.starts_with(file + ": " + bad.message)) << made.err;
+    EXPECT_EQ(std::ranges::count(made.err, '\n'), 1) << made.err;
+  }
+  for (const std::string text : {"", "{", "[]",
+                                 "\x7f"
+                                 "ELF"}) {
+    const std::string file = in_folder("bad.json").string();
+    std::ofstream(file) << text;
+    EXPECT_EQ(nuno("render " + file + " --out " + in_folder("bad.svg").string()).status, 2) << text;
+  }
+  EXPECT_FALSE(fs::exists(in_folder("bad.svg")));
+}
+
+TEST_F(Pictures, TheReadmesPictureIsWhatItsCommandMakes) {
+  const fs::path fresh = in_folder("nuno.svg");
+  const std::string scenes = NUNO_SCENES "/nuno/";
+  const Outcome made = nuno("render " + scenes + "n1.json " + scenes + "n2.json " + scenes +
+                            "o.json " + scenes + "u.json --plain --out " + fresh.string());
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::string svg = read_text(fresh);
+  EXPECT_TRUE(is_svg(svg)) << xml_mistake(svg);
+  const std::vector<double> now = numbers(svg);
+  const std::vector<double> then = numbers(read_text(NUNO_DOCS "/nuno.svg"));
+  ASSERT_EQ(now.size(), then.size());
+  double most = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) most = std::max(most, std::abs(now[i] - then[i]));
+  EXPECT_LE(most, 0.5) << "pixels: another machine may round otherwise, an eye sees no half pixel";
+}
+
+}  // namespace
