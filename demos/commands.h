@@ -30,6 +30,7 @@ struct OptimizeOptions {
   std::string scene;                 ///< a file
   std::string backend = "native";    ///< one of backend_names
   std::string optimizer = "global";  ///< one of optimizer_names
+  bool robust = false;               ///< the error averaged over small disturbances of the start
   std::optional<double> time_step;   ///< [s], > 0; absent: the scene's
   std::string out;                   ///< result file, "-" for standard output, empty for none
 };

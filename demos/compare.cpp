@@ -62,6 +62,29 @@ void print_rows(std::FILE* table, std::size_t width, const Comparison& compariso
     scene.clear();  // both stand for the two rows
     apart.clear();
   }
+  const auto most = std::ranges::max(comparison.rows, {}, &ComparisonRow::sensitivity);
+  const std::string warning = fragility(most.sensitivity);
+  if (!warning.empty()) fmt::print(table, "  {}\n", warning);
+}
+
+/// How far the engines agree over all scenes; nothing where no scene lets them be judged.
+void print_summary(std::FILE* table, const ComparisonSummary& summary) {
+  fmt::print(table,
+             "{} of {} scenes are well-conditioned at native's best α: a change at the start grows "
+             "at most {:g}-fold,\nno segment stretches by more than {:g} %.\n",
+             summary.well_conditioned, summary.scenes, largest_calm_sensitivity,
+             100 * largest_calm_strain);
+  if (summary.judged == 0) return;
+  const auto percents = [](const Spread& s) {
+    return fmt::format("median {:.2g} %, 95th percentile {:.2g} %, worst {:.2g} %", 100 * s.median,
+                       100 * s.most, 100 * s.worst);
+  };
+  fmt::print(table, "On the {} of them that are launched without stretching:\n", summary.judged);
+  fmt::print(table, "  {:<26} {} (of L)\n", "shapes apart", percents(summary.gap));
+  fmt::print(table, "  {:<26} {:.1f} % of {} gains within 2 % or 0.1 % of L\n",
+             "same error at the same α", 100 * summary.curve_agreement, summary.curve_points);
+  fmt::print(table, "  {:<26} {} (of the error)\n", "loss with the other's α",
+             percents(summary.loss));
 }
 
 /// A scene's name as part of a file's.
@@ -144,6 +167,7 @@ ExitStatus compare(const CompareOptions& options) {
   fmt::print(table,
              "L is the cloth's length. Shapes apart: the end shapes of both engines at the best α "
              "of native,\ncentroids aligned, mean over the particles.\n");
+  if (comparisons.size() > 1) print_summary(table, summarize(comparisons));
   // What is left of a comparison with diverged scenes is still one; without any, it is none.
   if (!out.empty() && !comparisons.empty()) {
     write_output(out, [&](std::FILE* file) { write_comparisons(file, comparisons); });

@@ -57,11 +57,13 @@ Json to_json(const Optimization& optimization) {
     if (!std::isfinite(evaluation.error)) continue;
     history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
   }
-  return {{"optimizer", optimization.optimizer},
-          {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
-          {"evaluations", summary.evaluations},
-          {"seconds", summary.seconds},
-          {"history", history}};
+  Json result = {{"optimizer", optimization.optimizer},
+                 {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
+                 {"evaluations", summary.evaluations},
+                 {"seconds", summary.seconds}};
+  if (optimization.robust_error) result["robust_error"] = *optimization.robust_error;
+  result["history"] = history;
+  return result;
 }
 
 /// Frames one by one: all of them as JSON at once take ten times their own memory.
@@ -84,6 +86,8 @@ Json to_json(const ComparisonRow& row) {
           {"max_error", row.error.max},
           {"centroid_error", row.error.centroid},
           {"control_effort", row.control_effort},
+          {"max_strain", row.max_strain},
+          {"sensitivity", row.sensitivity},
           {"evaluations", row.evaluations},
           {"seconds", row.seconds},
           {"error_with_the_other_alpha", row.error_with_the_other_gain}};
@@ -94,6 +98,8 @@ Json to_json(const Comparison& comparison) {
   for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
     curve[comparison.rows[i].backend] = comparison.curve_errors[i];  // infinity becomes null
   }
+  curve["sensitivity"] = comparison.curve_sensitivity;
+  curve["max_strain"] = comparison.curve_strain;
   return {{"scene", comparison.scene},
           {"rows", {to_json(comparison.rows[0]), to_json(comparison.rows[1])}},
           {"shape_difference",
@@ -106,7 +112,8 @@ Json to_json(const Comparison& comparison) {
 }  // namespace
 
 void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
-                  const Rollout& rollout, const std::optional<Optimization>& optimization) {
+                  const Rollout& rollout, double sensitivity,
+                  const std::optional<Optimization>& optimization) {
   const Problem& problem = backend.problem();
   Json head = {{"nuno_result", 1},
                {"scene", scene},
@@ -122,7 +129,9 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
                  {"max", rollout.error.max},
                  {"centroid", rollout.error.centroid},
                  {"relative", rollout.error.mean / problem.chain.length}}},
-               {"control_effort", rollout.control_effort}};
+               {"control_effort", rollout.control_effort},
+               {"max_strain", rollout.max_strain},
+               {"sensitivity", sensitivity}};
   if (optimization) head["optimization"] = to_json(*optimization);
   head["launch_velocity"] = to_json(rollout.launch_velocity);
   head["target"] = to_json(problem.target);

@@ -17,11 +17,14 @@ namespace nuno {
 struct Optimization {
   std::string optimizer;
   OptimizeSummary summary;
+  std::optional<double> robust_error =
+      {};  ///< of a robust search: the mean over disturbed starts [m]
 };
 
 /// The result JSON of one rollout, which has not diverged.
 void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
-                  const Rollout& rollout, const std::optional<Optimization>& optimization);
+                  const Rollout& rollout, double sensitivity,
+                  const std::optional<Optimization>& optimization);
 
 /// compare.json. A point of an alpha curve at which a rollout diverged is null; nothing else is.
 void write_comparisons(std::FILE* file, const std::vector<Comparison>& comparisons);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <nuno/robust.h>
+
 #include "commands.h"
 #include "engines.h"
 #include "json_files.h"
@@ -16,25 +18,40 @@ ExitStatus optimize(const OptimizeOptions& options) {
   if (frames > 0) require_few_frames(file);
   require_writable(options.out);
 
-  const OptimizeSummary found =
-      run_optimizer(options.optimizer, with_progress(objective(*backend), file.scene.name));
+  const RobustOptions robustness;
+  Optimization found{options.optimizer, {}, std::nullopt};
+  OptimizeSummary& search = found.summary;
+  search = run_optimizer(
+      options.optimizer,
+      with_progress(options.robust ? robust_objective(*backend, robustness) : objective(*backend),
+                    file.scene.name));
   clear_progress();
+  if (options.robust) {
+    found.robust_error = search.error;
+    search.evaluations *= 1 + static_cast<Index>(robustness.disturbances);
+  }
   // If every rollout diverged, the one at the gain it ended on says why.
-  const Rollout flight = rollout(*backend, found.gain, {.frames_per_second = frames});
+  const Rollout flight = rollout(*backend, search.gain, {.frames_per_second = frames});
   if (diverged(flight)) {
     report_divergence(options.scene, *backend, flight);
     return ExitStatus::diverged;
   }
+  const double growth = bounded_sensitivity(*backend, flight);
   if (!options.out.empty()) {
     write_output(options.out, [&](std::FILE* out) {
-      write_result(out, file.scene.name, *backend, flight, Optimization{options.optimizer, found});
+      write_result(out, file.scene.name, *backend, flight, growth, found);
     });
   }
   std::FILE* const summary = people(options.out);
-  print_summary(summary, file.scene.name, *backend, flight);
-  fmt::print(summary, "  {:<17} {} rollouts in {}{}: {}\n", options.optimizer, found.evaluations,
-             duration(found.seconds),
-             found.status == OptimizeStatus::budget ? ", budget spent" : "", found.reason);
+  print_summary(summary, file.scene.name, *backend, flight, growth);
+  if (found.robust_error) {
+    fmt::print(summary, "  {:<17} {:.4g} % of the cloth's length, mean of {} disturbed starts\n",
+               "robust error", 100 / file.problem.chain.length * *found.robust_error,
+               1 + robustness.disturbances);
+  }
+  fmt::print(summary, "  {:<17} {} rollouts in {}{}: {}\n", options.optimizer, search.evaluations,
+             duration(search.seconds),
+             search.status == OptimizeStatus::budget ? ", budget spent" : "", search.reason);
   return ExitStatus::done;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -13,6 +14,17 @@ bool diverged(const Rollout& rollout) {
   return rollout.status == RolloutStatus::diverged || !rollout.final.allFinite() ||
          !std::isfinite(rollout.error.mean) || !std::isfinite(rollout.error.max) ||
          !std::isfinite(rollout.error.centroid) || !std::isfinite(rollout.control_effort);
+}
+
+double bounded_sensitivity(const Backend& backend, const Rollout& flight) {
+  return std::min(sensitivity(backend, flight), 1 / backend.smallest_disturbance());
+}
+
+std::string fragility(double sensitivity) {
+  if (!(sensitivity > largest_calm_sensitivity)) return {};
+  return fmt::format(
+      "fragile: a change at the start grows {:.3g}-fold; engines and steps need not agree",
+      sensitivity);
 }
 
 std::string divergence_message(const std::string& scene_path, const Backend& backend,

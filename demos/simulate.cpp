@@ -19,12 +19,13 @@ ExitStatus simulate(const SimulateOptions& options) {
     report_divergence(options.scene, *backend, flight);
     return ExitStatus::diverged;
   }
+  const double growth = bounded_sensitivity(*backend, flight);
   if (!options.out.empty()) {
     write_output(options.out, [&](std::FILE* out) {
-      write_result(out, file.scene.name, *backend, flight, std::nullopt);
+      write_result(out, file.scene.name, *backend, flight, growth, std::nullopt);
     });
   }
-  print_summary(people(options.out), file.scene.name, *backend, flight);
+  print_summary(people(options.out), file.scene.name, *backend, flight, growth);
   return ExitStatus::done;
 }
 

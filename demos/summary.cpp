@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "output.h"
+#include "rollouts.h"
 
 namespace nuno {
 
@@ -15,7 +16,7 @@ std::string duration(double seconds) {
 }
 
 void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,
-                   const Rollout& rollout) {
+                   const Rollout& rollout, double sensitivity) {
   const Chain& chain = backend.problem().chain;
   const double percent = 100 / chain.length;
   fmt::print(file, "{}: {} particles on {}, {} steps of {}\n", printable(scene), chain.particles(),
@@ -26,6 +27,11 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
   fmt::print(file, "  {:<17} {:.3g} m from the target's\n", "centroid", rollout.error.centroid);
   fmt::print(file, "  {:<17} {:.4g} {}\n", "control effort", rollout.control_effort,
              chain.gravity > 0 ? "of a particle's weight" : "of m·L/t0²");
+  fmt::print(file, "  {:<17} {:.3g} % at most on the way\n", "strain", 100 * rollout.max_strain);
+  fmt::print(file, "  {:<17} {:.3g}-fold growth of a small change at the start\n", "sensitivity",
+             sensitivity);
+  const std::string warning = fragility(sensitivity);
+  if (!warning.empty()) fmt::print(file, "  {}\n", warning);
 }
 
 }  // namespace nuno

@@ -500,7 +500,8 @@ TEST_F(Result, HasEveryFieldAndNoNull) {
   const std::set<std::string> expected = {
       "nuno_result",    "scene", "backend",         "status",       "alpha",
       "time_step",      "steps", "cloth_length",    "target_scale", "error",
-      "control_effort", "final", "launch_velocity", "target",       "frames"};
+      "control_effort", "final", "launch_velocity", "target",       "frames",
+      "max_strain",     "sensitivity"};
   std::set<std::string> fields;
   for (const auto& item : result.items()) fields.insert(item.key());
   EXPECT_EQ(fields, expected);
@@ -652,7 +653,7 @@ TEST_F(ComparisonOfEngines, HasEveryFieldAndACommonCurve) {
   for (const Json& row : entry["rows"]) {
     for (const char* field :
          {"launch_only_error", "alpha", "error", "max_error", "centroid_error", "control_effort",
-          "evaluations", "seconds", "error_with_the_other_alpha"}) {
+          "max_strain", "sensitivity", "evaluations", "seconds", "error_with_the_other_alpha"}) {
       EXPECT_TRUE(row[field].is_number()) << field;
     }
     EXPECT_LE(row["error"], row["launch_only_error"]) << "gain 0 is among the gains it tries";

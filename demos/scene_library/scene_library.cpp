@@ -303,12 +303,13 @@ Scene family_member(std::uint64_t n) {
   scene.particles = 32;
   scene.arrival_time = random.uniform(0.4, 2);
   scene.cloth.hinge_stiffness = random.log_uniform(1e-4, 1e-1);
-  scene.launch = n % 2 == 0 ? Launch::inextensible : Launch::ballistic;
+  scene.launch = (n + n / 8) % 2 == 0 ? Launch::inextensible : Launch::ballistic;
   const double turning = random.uniform(0.2, 1.5) * pi;
   scene.initial = random_curve(random, turning, 1, Eigen::Vector2d(0, 1));
   const Eigen::Vector2d center(random.uniform(1, 3), random.uniform(0.5, 2));
   scene.target =
       n % 8 == 7 ? sharp_target(n / 8, center) : random_curve(random, turning, 1, center);
+  scene.cloth.stretch_stiffness = 200 * std::pow(10, std::floor(random.uniform(0, 3)));
   return scene;
 }
 

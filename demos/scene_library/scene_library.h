@@ -16,8 +16,9 @@ Points curve_from_direction(double (*direction)(double s), double length, const 
 Scene straight_to_s();
 
 /// The n-th scene of a seeded family: initial and target of smooth random curvature (turning up to
-/// ±1.5π), t₀ 0.4 … 2 s, hinge stiffness over three decades, both launches; every eighth has a
-/// sharp target instead (fold, letter Z, hairpin). The same n gives the same scene everywhere.
+/// ±1.5π), t₀ 0.4 … 2 s, hinge stiffness over three decades, stretch stiffness 200, 2000 or
+/// 20 000 N, both launches; every eighth has a sharp target instead (fold, letter Z, hairpin). The
+/// same n gives the same scene everywhere.
 Scene family_member(std::uint64_t n);
 
 /// The first `count` of them.
