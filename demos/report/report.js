@@ -139,7 +139,7 @@ class SceneView {
     const margin = 0.05 * Math.max(right - left, top - bottom);
     [left, right, bottom, top] = [left - margin, right + margin, bottom - margin, top + margin];
 
-    const frame = { left: 44, top: 10, width: width - 56 };
+    const frame = { left: 44, top: 10, width: width - 62 };
     frame.height = Math.min(Math.max((frame.width * (top - bottom)) / (right - left), 180), 460);
     const scale = Math.max((right - left) / frame.width, (top - bottom) / frame.height);
     left = (left + right - scale * frame.width) / 2;
@@ -221,7 +221,7 @@ class SceneView {
     const box = this.find('apart');
     box.replaceChildren();
     const width = box.clientWidth;
-    const frame = { left: 44, right: width - 12, top: 12, bottom: 62 };
+    const frame = { left: 44, right: width - 18, top: 12, bottom: 62 };
     const svg = element(box, 'svg', {
       class: 'figure', viewBox: `0 0 ${width} 96`, width, height: 96, role: 'img',
       'aria-label': 'Mean distance of the two engines over time',

@@ -12,6 +12,7 @@ import { chromium } from 'playwright-core';
 // Few particles and long steps: the page is tested, not the engines.
 const scene = {
   nuno_scene: 1, name: 'small </script> & "quoted"', particles: 8, arrival_time: 0.5,
+  time_step: 0.002,
   initial: [[0, 1], [1, 1]], target: [[2, 1], [2.5, 1.3], [3, 1]],
 };
 
