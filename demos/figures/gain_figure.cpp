@@ -41,6 +41,16 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
       high = std::max(high, point.gain);
     }
   }
+  // Gains that do not change anything yet are not worth the room either, but for a start.
+  double first = high;
+  for (const GainCurve& curve : curves) {
+    const auto changed = std::ranges::find_if(curve.curve, [&](const Evaluation& point) {
+      return !(std::abs(point.error - curve.launch_only_error) <= 0.03 * curve.launch_only_error);
+    });
+    if (changed != curve.curve.end()) first = std::min(first, changed->gain);
+  }
+  low = std::max(low, first / 3);
+  if (!(low < high / 10)) low = curves[0].curve.front().gain;
   // What is far worse than no control at all is not worth the room.
   const double top = 1.06 * percent * std::min(largest, 1.7 * launch_only);
 

@@ -6,7 +6,7 @@
 
 namespace nuno {
 
-/// Whether a file is a result, and not a scene: it says so in its first bytes of JSON.
+/// Whether a file says at its start that it is a scene.
 bool is_scene_file(const std::string& path);
 
 /// Reads and validates a result file. Throws InputError with file, pointer, value and rule.
