@@ -39,7 +39,7 @@ void turn(Points& vectors, const Points& rotation) {
 }
 
 /// w = s¹⁶: a correction late on the way. What it has to change is what the end is like, and the
-/// later a force comes the less of it is spent; at s¹⁶ the last tenth of the time takes most of it.
+/// later a force comes the less of it is spent; but the slow bending of the cloth takes its time.
 double aim_share_at(double progress) {
   const double s4 = std::pow(progress * progress, 2);
   return std::pow(s4 * s4, 2);

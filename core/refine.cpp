@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <chrono>
 #include <cmath>
 
@@ -38,16 +38,20 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
       break;
     }
     const Points miss = problem.target - summary.flight.final;
-    const Eigen::MatrixXd normal = tangent.transpose() * tangent;
-    const Vector pull = tangent.transpose() * miss.reshaped();
-    const double size = std::sqrt(normal.diagonal().maxCoeff());
+    const double size = tangent.colwise().norm().maxCoeff();
+    // [tangent; λ] δ = [miss; 0] in the least squares: the normal equations would square the
+    // condition, and tension's part of the tangent is small.
+    Eigen::MatrixXd rows(2 * tangent.rows(), tangent.cols());
+    rows.topRows(tangent.rows()) = tangent;
+    Vector right = Vector::Zero(rows.rows());
+    right.head(tangent.rows()) = miss.reshaped();
 
     const double before = miss.norm();
     double after = before;
     for (int attempt = 0; attempt < 8; ++attempt) {
-      Eigen::MatrixXd damped = normal;
-      damped.diagonal().array() += std::pow(lambda * size, 2);
-      const Vector step = damped.ldlt().solve(pull);
+      rows.bottomRows(tangent.cols()).setZero();
+      rows.bottomRows(tangent.cols()).diagonal().setConstant(lambda * size);
+      const Vector step = rows.householderQr().solve(right);
       aimed.aim_offset = summary.aim_offset + step.reshaped(2, particles);
       Rollout flight = rollout(*make(aimed), gain);
       ++summary.rollouts;
@@ -55,7 +59,7 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
       if (after < before) {
         summary.flight = std::move(flight);
         summary.aim_offset = aimed.aim_offset;
-        lambda = std::max(1e-7, 0.1 * lambda);
+        lambda = std::max(1e-9, 0.1 * lambda);
         break;
       }
       lambda *= 10;
