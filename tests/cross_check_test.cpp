@@ -33,8 +33,8 @@ TEST(CrossCheck, BothEnginesEndInOneShapeAtTheBestGain) {
 TEST(CrossCheck, TheGapShrinksWithTheStepOfBox2d) {
   const Problem problem = inextensible_s_curve();
   for (const double gain : {0.0, 0.0175, 0.05}) {
-    // Box2D is of first order: a fourth of the step, a fourth of the gap, as far as single
-    // precision and what strain the native cloth has (5e-5) let it show.
+    // Second order: a fourth of the step, a sixteenth of the gap, as far as single precision and
+    // what strain the native cloth has (5e-5) let it show.
     EXPECT_LT(shape_gap(problem, gain, 5e-4), 0.6 * shape_gap(problem, gain, 2e-3)) << gain;
   }
 }
