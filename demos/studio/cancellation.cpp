@@ -2,14 +2,21 @@
 
 #include <algorithm>
 #include <span>
+#include <thread>
 #include <vector>
 
 namespace nuno::studio {
 namespace {
 
-// A few tenths of a second on the slower engine; whole SIMD packs on the faster one.
-constexpr double particle_steps_of_a_portion = 2e7;
-constexpr std::size_t smallest_portion = 16;
+/// Gains of one portion: a few tenths of a second of work; whole SIMD packs on native, and a gain
+/// for every core on an engine that flies them one by one.
+std::size_t gains_of_portion(const Backend& backend) {
+  const double work = static_cast<double>(backend.steps()) *
+                      static_cast<double>(backend.problem().chain.particles());
+  const bool is_native = backend.name() == "native";
+  const std::size_t least = is_native ? 16 : std::max(1u, std::thread::hardware_concurrency());
+  return std::max(least, static_cast<std::size_t>((is_native ? 2e7 : 1e6) / work));
+}
 
 }  // namespace
 
@@ -31,11 +38,7 @@ void Turns::end(const std::string& page, const Turn& turn) {
 }
 
 Objective cancellable(const Backend& backend, const Turn& turn) {
-  const double work = static_cast<double>(backend.steps()) *
-                      static_cast<double>(backend.problem().chain.particles());
-  const std::size_t portion =
-      std::max(smallest_portion, static_cast<std::size_t>(particle_steps_of_a_portion / work));
-
+  const std::size_t portion = gains_of_portion(backend);
   const auto in_portions = [turn, portion](auto evaluate) {
     return [turn, portion, evaluate](std::span<const double> gains) {
       turn.check();

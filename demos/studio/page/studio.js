@@ -69,7 +69,7 @@ function changed(live, stamp = null) {
     update_fields();
   }
   request(live);
-  redraw();
+  redraw_soon();
 }
 
 function frame_count(live) {
@@ -171,13 +171,16 @@ function request(live) {
 }
 
 // For tests and for the pointer: whether an answer is still on its way.
+let settle_due = 0;
 function settle() {
-  queueMicrotask(() => setTimeout(() => {
+  settle_due ||= setTimeout(() => {
+    settle_due = 0;
     const busy = Object.values(channels).some((channel) => channel.busy);
     document.documentElement.dataset.busy = busy;
-    if (!busy) announce();
+    if (busy) return;
+    announce();
     show_scores();
-  }));
+  });
 }
 
 let announced = '';
@@ -246,7 +249,15 @@ function fitted_target() {
   return Math.abs(factor - 1) < 0.004 || !Number.isFinite(factor) ? null : geometry.scaled(target, factor);
 }
 
+// Once a frame, however often the pointer moves in it; an answer draws at once.
+let redraw_due = 0;
+function redraw_soon() {
+  redraw_due ||= requestAnimationFrame(redraw);
+}
+
 function redraw() {
+  cancelAnimationFrame(redraw_due);
+  redraw_due = 0;
   const engines = ['native', 'box2d'].filter(shows);
   const cloths = Object.fromEntries(engines.map((engine) => [engine, cloth_of(engine)]));
   const views = app.engine === 'side'
@@ -694,7 +705,7 @@ const editor_app = {
     if (live) app.time = null;
     changed(live, stamp);
   },
-  select, redraw,
+  select, redraw: redraw_soon,
   drawn: () => {
     if (app.playing) play(false);
     app.time = null;
@@ -856,6 +867,6 @@ async function start() {
 }
 
 // For the browser test, and for the curious.
-window.nuno_studio = { app, view, latencies, median: () => median(latencies) };
+window.nuno_studio = { app, view, latencies, redraw, show, median: () => median(latencies) };
 
 start();
