@@ -36,10 +36,12 @@ constexpr double pair_range = 1.7;     // rad; the inner spring is 0.009 rods lo
 // to 2 s, three decades of hinge stiffness) where a disturbance grows less than tenfold; and the
 // time of one flight:
 //     iterations         8                        16                       32
-//     t₀/1000   1.0e-4, 8.7e-4, 15 ms    1.0e-4, 7.3e-4, 21 ms    6.1e-5, 6.8e-4,  26 ms
-//     t₀/2000   4.2e-5, 8.7e-4, 30 ms    3.9e-5, 7.3e-4, 35 ms    4.9e-5, 6.8e-4,  65 ms
-//     t₀/4000   3.1e-5, 6.1e-4, 52 ms    3.8e-5, 3.1e-4, 77 ms    4.2e-5, 3.0e-4, 116 ms
-// At t₀/2000 rounding, 3e-5, has caught up with most scenes' error of the step.
+//     t₀/1000   6.9e-5, 4.9e-4, 14 ms    5.9e-5, 3.1e-4, 20 ms    6.1e-5, 3.9e-4,  31 ms
+//     t₀/2000   3.5e-5, 4.9e-4, 31 ms    3.5e-5, 3.1e-4, 41 ms    3.6e-5, 3.9e-4,  63 ms
+//     t₀/4000   1.8e-5, 4.9e-4, 61 ms    2.6e-5, 2.4e-4, 74 ms    4.2e-5, 3.1e-4, 108 ms
+// 60 scenes that had no say in any choice here give 6.0e-5, 4.9e-4 at t₀/2000 and 16 iterations.
+// More steps cost centroid: its rounding grows with their number, 5e-5 of the cloth's length at
+// t₀/2000, 2e-4 at t₀/4000, 4e-4 at t₀/8000 (s-curve without control, where it is largest).
 constexpr double default_steps = 2000;
 
 float narrow(double value) { return static_cast<float>(value); }
@@ -99,7 +101,7 @@ struct HingeSpring {
 // One step is RATTLE's (Andersen 1983), second order in h, with Box2D as its solver of joints and
 // springs. Box2D's own step v ← P(v + h·a), x ← x + h·v cuts the velocity down to what the joints
 // allow where the step begins (P, by impulses J·λ), so it loses each time what has turned out of
-// that since the last: an error of first order, thirty times as large as all others. Here Box2D
+// that since the last: an error of first order, twenty times as large as all others. Here Box2D
 // takes half a kick, which gives the velocity at the very moment of x, and the same half again,
 // impulses too, follows outside:
 //     v  = s·u + q·a + J·λ         u: mean velocity over the last step
@@ -110,13 +112,11 @@ struct HingeSpring {
 // λ̄ ← λ̄ + w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the
 // joints forbid; each step multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
 //
-// Box2D's position solver closes what stays open of the joints, of third order in h, and does so
-// at x + h·v: so it is handed poses that lead by the last step's h·(u' − v), and its corrections
-// are taken over.
+// Box2D's position solver closes what stays open of the joints, and its corrections are taken over.
 //
-// The flight is long and the cloth small: so poses and velocities are kept in double precision,
-// poses about the centroid. Neither joints nor corrections move the centroid; what Box2D's rounding
-// makes of that (1e-8 of a velocity, but the same way for a thousand steps) is taken out.
+// Poses and velocities are kept in double precision, poses about the centroid: the flight is long
+// and the cloth small. Nothing here knows where the centroid should be: it flies by the velocities
+// that Box2D solves, and misses by their rounding.
 struct Plan {
   double h = 0;            // [s]
   double unit_length = 0;  // [m]
@@ -176,7 +176,6 @@ class ChainSimulation final : public Simulation {
         center_(centroid(positions)),
         pose_(3, rods()),
         velocity_(3, rods()),
-        lead_(Motions::Zero(3, rods())),
         handed_pose_(3, rods()),
         mean_impulse_(2, rods() - 1),
         left_(2, rods()),
@@ -208,7 +207,7 @@ class ChainSimulation final : public Simulation {
     if (!apply(forces)) return give_up();
     hand_over();
     world_.Step(1, plan_.velocity_iterations, plan_.position_iterations);
-    if (!take_over(forces) || !turn_within_range()) return give_up();
+    if (!take_over() || !turn_within_range()) return give_up();
     read();
   }
 
@@ -288,10 +287,8 @@ class ChainSimulation final : public Simulation {
     return revolute;
   }
 
-  double force_scale() const { return plan_.half_kick / plan_.unit_force; }
-
   bool apply(const Points& forces) {
-    const double scale = force_scale();
+    const double scale = plan_.half_kick / plan_.unit_force;
     if (!((scale * forces).cwiseAbs().maxCoeff() < largest_force)) return false;
     if (!forces.allFinite()) return false;  // the maximum may have passed over a NaN
     for (Index i = 0; i < rods(); ++i) {
@@ -305,7 +302,7 @@ class ChainSimulation final : public Simulation {
   }
 
   void hand_over() {
-    handed_pose_ = (pose_ + lead_).cast<float>();
+    handed_pose_ = pose_.cast<float>();
     for (Index i = 0; i < rods(); ++i) {
       b2Body& body = *bodies_[index(i)];
       body.SetTransform({handed_pose_(0, i), handed_pose_(1, i)}, handed_pose_(2, i));
@@ -314,7 +311,7 @@ class ChainSimulation final : public Simulation {
     }
   }
 
-  bool take_over(const Points& forces) {
+  bool take_over() {
     Motions solved(3, rods());      // v
     Motions correction(3, rods());  // of the position solver, after x + h·v as Box2D rounds it
     for (Index i = 0; i < rods(); ++i) {
@@ -327,11 +324,6 @@ class ChainSimulation final : public Simulation {
       correction.col(i) = (pose - moved).cast<double>();
     }
     if (!within_limits(solved)) return false;
-    correction.topRows<2>().colwise() -= mass_center(correction);
-    Vector2d kick = force_scale() * forces.rowwise().mean();
-    kick.y() -= plan_.half_kick * plan_.gravity;
-    const Vector2d expected = plan_.keep * mass_center(velocity_) + kick;
-    solved.topRows<2>().colwise() += (expected - mass_center(solved)).eval();
 
     velocity_ = first_ ? solved : Motions(2 * solved - plan_.keep * velocity_);  // to become u'
     for (Index i = 0; i + 1 < rods(); ++i) {
@@ -350,7 +342,6 @@ class ChainSimulation final : public Simulation {
     if (!first_) velocity_ *= plan_.keep;
     first_ = false;
 
-    lead_ = velocity_ - solved;
     pose_ += velocity_ + correction;
     return within_limits(velocity_);
   }
@@ -436,7 +427,6 @@ class ChainSimulation final : public Simulation {
   Vector2d center_;               // [m], where poses have their origin
   Motions pose_;                  // x
   Motions velocity_;              // u
-  Motions lead_;
   Eigen::Matrix3Xf handed_pose_;
   Matrix2Xd mean_impulse_;  // λ̄ of every hinge
   Matrix2Xd left_, right_;  // the rods' ends from their centres
@@ -485,9 +475,9 @@ struct StepLimit {
 };
 
 /// The hinges' springs are explicit, of highest frequency ω² = 16·k/(m·ℓ²) for a moment k·θ on
-/// particles of a straight chain, and their dashpots of rate c in its place. h²ω² + 2hc ≤ ½ keeps
-/// well below RATTLE's own limit of 4, since λ̄ lags: at 1, one of 60 random scenes diverged, at 2,
-/// seventeen.
+/// particles of a straight chain, and their dashpots of rate c in its place. h²ω² + 2hc ≤ ½ stays
+/// well below RATTLE's own limit of 4, since λ̄ lags: on the scenes above at t₀/1000 the 95th
+/// percentile of the gap is 3e-4, with 1 in place of ½ 1.5e-3, with 2 5.6e-3.
 StepLimit hinge_limit(const Chain& chain) {
   constexpr double limit = 0.5;
   const double shortest = chain.rest_length.minCoeff();

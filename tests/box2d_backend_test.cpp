@@ -153,11 +153,24 @@ TEST(Box2dFlight, AFreeClothFollowsTheDragRecurrenceStepByStep) {
     chain->step(Points::Zero(2, 4));
     v = (n == 0 ? r.r1 : r.r) * v - Vector2d(0, (n == 0 ? r.q1 : r.q) * 9.8);
     x += r.h * v;
-    // Rounding of rods, joints and centroid; of the flight of 30 m nothing is rounded.
+    // Box2D rounds each kick of gravity, 2e-6 rods per step, to the last digit of a velocity of
+    // 0.04: 1e-3 of it at worst and mostly the same way, so up to 1e-3 of the fall g·t²/2.
+    const double t = static_cast<double>(n + 1) * r.h;
     const Points moved = chain->positions() - problem.chain.initial;
-    ASSERT_LT((moved.colwise() - x).cwiseAbs().maxCoeff(), 1e-5) << "step " << n;
-    ASSERT_LT((centroid(moved) - x).norm(), 1e-10) << "step " << n;
+    ASSERT_LT((moved.colwise() - x).cwiseAbs().maxCoeff(), 2e-6 + 1e-3 * 4.9 * t * t)
+        << "step " << n;
   }
+}
+
+// Nothing but Box2D's own motion may bring the centroid down: it has no other way to know.
+TEST(Box2dFlight, AClothDroppedFromRestFallsByGravity) {
+  const Problem problem = problem_of(Points{{0.0, 0.3, 0.5, 0.6}, {0.0, 0.1, 0.4, 0.8}}, 9.8);
+  const auto backend = box2d::make_backend(problem);
+  const auto chain = backend->start(problem.chain.initial, Points::Zero(2, 4));
+  for (Index n = 0; n < backend->steps(); ++n) chain->step(Points::Zero(2, 4));
+  const Vector2d fall = centroid(chain->positions()) - centroid(problem.chain.initial);
+  EXPECT_NEAR(fall.y(), -4.9, 1e-3 * 4.9);  // rounding as above; no drag, so no other error
+  EXPECT_NEAR(fall.x(), 0, 1e-5);
 }
 
 TEST(Box2dFlight, DragAndGravityAreExactAtAnyStep) {
@@ -198,9 +211,33 @@ TEST(Box2dFlight, SegmentsKeepTheirLength) {
         segment_lengths(chain->positions()).cwiseQuotient(backend->problem().chain.rest_length);
     worst = std::max(worst, (strain.array() - 1).abs().maxCoeff());
   }
-  // Rods turn by up to 5e-3 rad per step: half the square of it at the first step, which starts
-  // without the impulses of one before, and its cube later.
+  // Rods turn by up to 5e-3 rad per step: half the square of it, 1e-5, at the first step, which
+  // starts without the impulses of one before.
   EXPECT_LT(worst, 1e-5);
+}
+
+// With 16 sweeps, which do not solve 30 joints to the last digit.
+TEST(Box2dFlight, ALongLivelyChainStaysTogetherAndKeepsItsEnergy) {
+  Points shape(2, 32), launch(2, 32);
+  for (Index i = 0; i < 32; ++i) {
+    const double s = static_cast<double>(i) / 31;
+    shape.col(i) = Vector2d(std::sin(3 * s), 1 - std::cos(3 * s)) / 3;
+    launch.col(i) = Vector2d(2 * std::cos(5 * s), 2 * std::sin(7 * s));
+  }
+  const auto backend =
+      box2d::make_backend(problem_of(shape), {.time_step = 1.0 / 2000, .velocity_iterations = 16});
+  const auto chain = backend->start(shape, launch);
+  double first = 0;
+  for (Index n = 0; n < backend->steps(); ++n) {
+    chain->step(Points::Zero(2, 32));
+    if (n == 10) first = chain->velocities().squaredNorm();
+  }
+  const Vector ratio =
+      segment_lengths(chain->positions()).cwiseQuotient(backend->problem().chain.rest_length);
+  // 6e-5, and 3e-4 without the position solver's corrections.
+  EXPECT_LT((ratio.array() - 1).abs().maxCoeff(), 1.5e-4);
+  // 4e-6; Box2D's own step loses 6 %, a weight w of 0.1 loses 5e-4.
+  EXPECT_NEAR(chain->velocities().squaredNorm(), first, 1e-4 * first);
 }
 
 // RATTLE's order: Box2D's own step would halve it.
@@ -231,7 +268,6 @@ TEST(Box2dFlight, ASwingingChainKeepsItsEnergy) {
   for (int n = 0; n < 10; ++n) chain->step(Points::Zero(2, 5));
   const double first = chain->velocities().squaredNorm();
   for (Index n = 10; n < backend->steps(); ++n) chain->step(Points::Zero(2, 5));
-  // Box2D's own step loses 1 % here.
   EXPECT_NEAR(chain->velocities().squaredNorm(), first, 1e-3 * first);
 }
 
