@@ -30,9 +30,14 @@ struct OptimizeOptions {
   std::string scene;                 ///< a file
   std::string backend = "native";    ///< one of backend_names
   std::string optimizer = "global";  ///< one of optimizer_names
-  bool robust = false;               ///< the error averaged over small disturbances of the start
-  std::optional<double> time_step;   ///< [s], > 0; absent: the scene's
-  std::string out;                   ///< result file, "-" for standard output, empty for none
+  /// Least effort within this error, over the cloth's length; takes the optimiser's place.
+  std::optional<double> error_limit;
+  /// Least error within this control effort; takes the optimiser's place.
+  std::optional<double> effort_limit;
+  bool refine = false;              ///< aims off until the cloth is on the target
+  bool robust = false;              ///< the error averaged over small disturbances of the start
+  std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
+  std::string out;                  ///< result file, "-" for standard output, empty for none
 };
 
 /// Both engines on the same scenes.

@@ -87,6 +87,12 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
   return make_backend(name, file, file.scene.time_step);
 }
 
+MakeBackend backend_maker(std::string_view name, const SceneFile& file) {
+  return [name, &file](const Problem& problem) {
+    return make_backend(name, {file.path, file.scene, problem});
+  };
+}
+
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
                                                double gain) {
   std::unique_ptr<Backend> backend = make_backend(name, file);

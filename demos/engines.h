@@ -2,6 +2,7 @@
 
 #include <nuno/backend.h>
 #include <nuno/optimize.h>
+#include <nuno/refine.h>
 
 #include <array>
 #include <memory>
@@ -32,6 +33,9 @@ inline constexpr std::array<std::string_view, 2> backend_names = {"native", "box
 /// The engine called `name`, one of backend_names, made ready for the scene. Throws InputError
 /// where one rollout would take hours.
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file);
+
+/// Makes that engine for the scene's problem aimed elsewhere, see refine.h; `file` must outlive it.
+MakeBackend backend_maker(std::string_view name, const SceneFile& file);
 
 /// The same with a step that is short enough for `gain` as well.
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,

@@ -63,6 +63,23 @@ Json to_json(const Optimization& optimization) {
                  {"seconds", summary.seconds}};
   if (optimization.robust_error) result["robust_error"] = *optimization.robust_error;
   result["history"] = history;
+  if (!optimization.trade_off.empty()) {
+    Json curve = Json::array();
+    for (const TradeOffPoint& point : optimization.trade_off) {
+      curve.push_back(
+          {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
+    }
+    result["trade_off"] = curve;
+  }
+  if (optimization.refinement) {
+    const RefineSummary& refinement = *optimization.refinement;
+    result["refinement"] = {{"status", refinement.converged ? "converged" : "nearest"},
+                            {"error_before", refinement.error_before},
+                            {"rollouts", refinement.rollouts},
+                            {"tangents", refinement.tangents},
+                            {"seconds", refinement.seconds},
+                            {"aim_offset", to_json(refinement.aim_offset)}};
+  }
   return result;
 }
 

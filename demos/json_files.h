@@ -2,7 +2,9 @@
 
 #include <nuno/backend.h>
 #include <nuno/optimize.h>
+#include <nuno/refine.h>
 #include <nuno/rollout.h>
+#include <nuno/trade_off.h>
 
 #include <cstdio>
 #include <optional>
@@ -17,8 +19,9 @@ namespace nuno {
 struct Optimization {
   std::string optimizer;
   OptimizeSummary summary;
-  std::optional<double> robust_error =
-      {};  ///< of a robust search: the mean over disturbed starts [m]
+  std::optional<double> robust_error = {};  ///< of a robust search: mean over disturbed starts [m]
+  std::vector<TradeOffPoint> trade_off = {};     ///< where a limit was asked for
+  std::optional<RefineSummary> refinement = {};  ///< where the flight aims off
 };
 
 /// The result JSON of one rollout, which has not diverged.

@@ -169,13 +169,44 @@ ExitStatus run(int argc, char** argv) {
           fmt::format("Search: {}", fmt::join(optimizer_names, " or ")))
       ->type_name("NAME")
       ->default_str(optimization.optimizer);
+  const auto add_limit = [&](const char* name, std::optional<double>& limit,
+                             const char* description) {
+    optimize_command
+        .add_option_function<std::string>(
+            name,
+            [name, &limit](const std::string& text) {
+              limit = number(name, text);
+              if (!(*limit >= 0)) {
+                throw CLI::ValidationError(name, fmt::format("{} is not >= 0", text));
+              }
+            },
+            description)
+        ->type_name("X");
+  };
+  add_limit("--error-limit", optimization.error_limit,
+            "The gain of least control effort whose error is at most X\n"
+            "of the cloth's length, instead of the one of least error");
+  add_limit("--effort-limit", optimization.effort_limit,
+            "The gain of least error whose control effort is at most X");
+  optimize_command.add_flag("--refine", optimization.refine,
+                            "Then aim off the target until the cloth arrives on it, as near\n"
+                            "as a cloth can; best with \"reference\": \"morph\" and\n"
+                            "\"damping_ratio\": 0.7 in the scene");
   optimize_command.add_flag("--robust", optimization.robust,
                             "Prefer a gain whose answer is not fragile: the error is the mean\n"
                             "over five starts, four of them disturbed by 0.1 % of the length");
   add_time_step(optimize_command, optimization.time_step);
   add_out(optimize_command, optimization.out, "FILE", out_file);
   optimize_command.group(commands);
-  optimize_command.callback([&] { chosen = [&] { return optimize(optimization); }; });
+  optimize_command.callback([&] {
+    if (optimization.error_limit && optimization.effort_limit) {
+      throw CLI::ValidationError("--effort-limit", "does not go with --error-limit");
+    }
+    if (optimization.robust && (optimization.error_limit || optimization.effort_limit)) {
+      throw CLI::ValidationError("--robust", "does not go with a limit");
+    }
+    chosen = [&] { return optimize(optimization); };
+  });
 
   CompareOptions comparison;
   CLI::App& compare_command =

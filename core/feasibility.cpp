@@ -1,0 +1,74 @@
+#include <nuno/feasibility.h>
+
+#include <fmt/format.h>
+
+#include <nuno/launch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace nuno {
+
+// A segment that stretches at the rate u stops when the thread's energy ½·EA·ε²·ℓ has taken up the
+// kinetic ½·(m/2)·(u·ℓ)² of its two ends: ε = u·√(m·ℓ/(2·EA)). Neighbours that stretch alike share
+// a longer way: over the whole cloth ε = u·L/c at most, c = √(EA·L/M) the speed of sound.
+Feasibility assess(const Backend& backend) {
+  const Problem& problem = backend.problem();
+  const Chain& chain = problem.chain;
+  const Points velocities = launch(backend);
+
+  Feasibility result;
+  result.time_step = backend.time_step();
+  result.steps = backend.steps();
+  result.launch_speed = velocities.colwise().norm().maxCoeff();
+  const Vector target_length = segment_lengths(problem.target);
+  Vector turns(chain.rest_length.size());
+  for (Index i = 0; i < turns.size(); ++i) {
+    const Eigen::Vector2d before = chain.initial.col(i + 1) - chain.initial.col(i);
+    const Eigen::Vector2d after = problem.target.col(i + 1) - problem.target.col(i);
+    const Eigen::Vector2d apart = velocities.col(i + 1) - velocities.col(i);
+    result.length_mismatch =
+        std::max(result.length_mismatch, std::abs(target_length[i] / chain.rest_length[i] - 1));
+    result.launch_stretching = std::max(
+        result.launch_stretching, std::abs(before.normalized().dot(apart)) / chain.rest_length[i]);
+    turns[i] = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
+    if (i > 0) {
+      turns[i] = turns[i - 1] + std::remainder(turns[i] - turns[i - 1], 2 * std::numbers::pi);
+    }
+  }
+  result.turning = (turns.array() - turns.mean()).abs().maxCoeff();
+  const double sound = std::sqrt(chain.cloth.stretch_stiffness * chain.length / chain.cloth.mass);
+  result.launch_strain = result.launch_stretching * chain.length / sound;
+  return result;
+}
+
+std::string verdict(const Feasibility& feasibility) {
+  std::string words;
+  const auto say = [&](const std::string& sentence) {
+    words += (words.empty() ? "" : "\n") + sentence;
+  };
+  if (feasibility.length_mismatch > 1e-2) {
+    say(fmt::format(
+        "The target's segments differ from the cloth's by up to {:.1f} %: the cloth comes "
+        "near, not onto it.",
+        100 * feasibility.length_mismatch));
+  }
+  if (feasibility.launch_strain > 2e-2) {
+    say(
+        fmt::format("The launch stretches the cloth by some {:.0f} % before it pulls back: "
+                    "\"launch\": \"inextensible\" does not.",
+                    100 * feasibility.launch_strain));
+  }
+  if (feasibility.turning > 2 * std::numbers::pi) {
+    say(fmt::format("A part of the cloth turns {:.1f} times against the rest on the way.",
+                    feasibility.turning / (2 * std::numbers::pi)));
+  }
+  if (feasibility.steps > 100'000) {
+    say(fmt::format("The hinges are so stiff for segments so short that a flight takes {} steps.",
+                    feasibility.steps));
+  }
+  return words;
+}
+
+}  // namespace nuno
