@@ -102,7 +102,6 @@ double draw_title(Drawing& drawing, const FlightFigure& options, const std::vect
         y += 18;
       }
       drawing.line({x, y - 4}, {x + 24, y - 4}, style_of(i, flights.size(), "thick"));
-      drawing.marker(series_marker(i), {x + 12, y - 4}, 6, series(i), Weight::none);
       drawing.text({x + 31, y}, name, Anchor::start);
       x += wide;
     }
@@ -184,8 +183,8 @@ void draw_arrival(Drawing& drawing, const Box& frame, const std::vector<Flight>&
       drawing.line(places[k], wanted[k], "hair", Weight::none);
     }
     drawing.line(places, style_of(i, flights.size(), "thick"));
+    if (flights.size() > 1) continue;  // the dots of one would hide the other
     draw_particles(drawing, plot, final, i);
-    if (flights.size() > 1) continue;
     Index worst = 0;
     (final - flights[i].target).colwise().squaredNorm().maxCoeff(&worst);
     drawing.label(places[static_cast<std::size_t>(worst)],
@@ -330,7 +329,7 @@ Drawing draw_moment(const std::vector<Flight>& flights, double time, const Fligh
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const Points pose = positions_at(flights[i], time);
     drawing.line(mapped(plot, pose), style_of(i, dashed(flights, options), final_width(options)));
-    if (!options.plain) draw_particles(drawing, plot, pose, i);
+    if (!options.plain && flights.size() == 1) draw_particles(drawing, plot, pose, i);
   }
   if (!options.plain) {
     const Box& frame = plot.frame();

@@ -119,19 +119,19 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
     drawing.end_clip();
   }
   for (std::size_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].descent.empty()) continue;
+    std::vector<Vec> path;
+    for (const Evaluation& step : curves[i].descent) path.push_back(at(step.gain, step.error));
+    drawing.line(path, "soft short thin", Weight::light);
+    for (const Vec& step : path) drawing.marker(Marker::diamond, step, 6, series(i));
+  }
+  for (std::size_t i = 0; i < curves.size(); ++i) {
     for (const Evaluation& minimum : local_minima(curves[i].curve)) {
       if (percent * minimum.error > top) continue;
       drawing.marker(series_marker(i), at(minimum.gain, minimum.error), small ? 5 : 7,
                      i == 0 ? "a open" : "b open");
     }
     drawing.marker(series_marker(i), at(0, curves[i].launch_only_error), small ? 6 : 8, series(i));
-  }
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    if (curves[i].descent.empty()) continue;
-    std::vector<Vec> path;
-    for (const Evaluation& step : curves[i].descent) path.push_back(at(step.gain, step.error));
-    drawing.line(path, "soft short thin", Weight::light);
-    for (const Vec& step : path) drawing.marker(Marker::diamond, step, 6, series(i));
   }
   // The best of an engine, ringed; both are named, unless they are one.
   const Box labels = {frame.left + 2, frame.top + 2, frame.width - 4, frame.height - 4};
