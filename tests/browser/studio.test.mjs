@@ -1,0 +1,273 @@
+// The studio in a real browser with real pointer input: draw, throw, drag, watch, keep.
+
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { after, before, test } from 'node:test';
+import { chromium } from 'playwright-core';
+
+const program = process.env.NUNO_PROGRAM;
+const folder = mkdtempSync(path.join(tmpdir(), 'nuno-studio-test-'));
+const patience = 60_000;
+let server, browser, page, url;
+const page_errors = [];
+
+before(async () => {
+  server = spawn(program, ['studio', '--no-open', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  url = await new Promise((resolve, reject) => {
+    let said = '';
+    server.stdout.on('data', (data) => {
+      said += data;
+      const found = said.match(/http:\/\/127\.0\.0\.1:\d+\//);
+      if (found) resolve(found[0]);
+    });
+    server.on('exit', () => reject(new Error(`the studio ended: ${said}`)));
+  });
+  browser = await chromium.launch({
+    executablePath: '/usr/bin/chromium',
+    args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-background-networking'],
+  });
+  page = await new_page({ viewport: { width: 1280, height: 800 } });
+});
+
+after(async () => {
+  await browser?.close();
+  server?.kill('SIGINT');
+  rmSync(folder, { recursive: true, force: true });
+});
+
+async function new_page(options) {
+  const context = await browser.newContext({ acceptDownloads: true, ...options });
+  const made = await context.newPage();
+  made.setDefaultTimeout(patience);
+  made.on('pageerror', (error) => page_errors.push(error.message));
+  await made.goto(url);
+  await settled(made);
+  return made;
+}
+
+async function settled(where = page) {
+  await where.waitForTimeout(60);
+  await becomes(where, () => document.documentElement.dataset.busy === 'false');
+}
+
+// Not waitForFunction: it needs eval, which the page's policy forbids.
+async function becomes(where, condition) {
+  const until = Date.now() + patience;
+  while (!(await where.evaluate(condition))) {
+    assert.ok(Date.now() < until, `in vain: ${condition}`);
+    await where.waitForTimeout(20);
+  }
+}
+
+const scene_of = (where = page) => where.evaluate(() => nuno_studio.app.doc.scene);
+const flight_of = (engine, where = page) => where.evaluate((name) => {
+  const { alpha, error, backend } = nuno_studio.app.results[name].flight;
+  return { alpha, error, backend };
+}, engine);
+
+// Along points of the stage, given in shares of its width and height.
+async function stroke(points) {
+  const box = await page.locator('#stage').boundingBox();
+  const at = ([x, y]) => [box.x + x * box.width, box.y + y * box.height];
+  await page.mouse.move(...at(points[0]));
+  await page.mouse.down();
+  for (const point of points.slice(1)) await page.mouse.move(...at(point));
+  await page.mouse.up();
+  await settled();
+}
+const curve = (count, f) => Array.from({ length: count }, (_, i) => f(i / (count - 1)));
+
+async function download(act) {
+  const [file] = await Promise.all([page.waitForEvent('download'), act()]);
+  const to = path.join(folder, file.suggestedFilename());
+  await file.saveAs(to);
+  return to;
+}
+
+test('both shapes are drawn with the pointer, and the best throw is there', async () => {
+  await page.click('#select-initial');
+  await page.keyboard.press('d');
+  await stroke(curve(30, (t) => [0.15 + 0.2 * t, 0.75 + 0.03 * Math.sin(6 * t)]));
+  await page.click('#select-target');
+  await page.click('#tool-draw');
+  await stroke(curve(40, (t) => [0.6 + 0.22 * t, 0.4 + 0.12 * Math.sin(5 * t)]));
+  const scene = await scene_of();
+  assert.equal(scene.initial.length, 64);
+  assert.equal(scene.target.length, 64);
+  assert.ok(scene.initial.every(([, y]) => y < Math.min(...scene.target.map((p) => p[1])) + 1));
+  const { error } = await flight_of('native');
+  assert.ok(error.relative < 0.2, `error ${error.relative}`);
+  assert.match(await page.textContent('#hint'), /m long, the cloth is/);
+});
+
+test('dragging the target moves it and the optimum with it', async () => {
+  const before_drag = { scene: await scene_of(), flight: await flight_of('native') };
+  const box = await page.locator('#stage').boundingBox();
+  const grip = await page.evaluate(() => nuno_studio.view.to_screen(nuno_studio.app.doc.scene.target[30]));
+  await page.evaluate(() => nuno_studio.latencies.splice(0));
+  await page.mouse.move(box.x + grip[0], box.y + grip[1]);
+  await page.mouse.down();
+  for (let i = 1; i <= 80; i++) {
+    await page.mouse.move(box.x + grip[0] - i, box.y + grip[1] + 30 * Math.sin(i / 12));
+    await page.waitForTimeout(16);
+  }
+  await page.mouse.up();
+  await settled();
+  const [median, count] = await page.evaluate(() => [nuno_studio.median(), nuno_studio.latencies.length]);
+  console.log(`pointer move to new optimum drawn: median ${median.toFixed(1)} ms over ${count} moves`);
+  assert.ok(count > 0, 'the optimum followed');
+  const scene = await scene_of();
+  assert.notDeepEqual(scene.target, before_drag.scene.target);
+  assert.deepEqual(scene.initial, before_drag.scene.initial);
+  assert.notEqual((await flight_of('native')).alpha, before_drag.flight.alpha);
+  await page.keyboard.press('Control+z');
+  await settled();
+  assert.deepEqual((await scene_of()).target, before_drag.scene.target);
+  assert.deepEqual(await flight_of('native'), before_drag.flight);
+  await page.keyboard.press('Control+Shift+z');
+  await settled();
+  assert.deepEqual((await scene_of()).target, scene.target);
+});
+
+test('handles, keys and single points change the shape', async () => {
+  const length = (line) => line.reduce((sum, p, i) => sum + (i ? Math.hypot(p[0] - line[i - 1][0], p[1] - line[i - 1][1]) : 0), 0);
+  await page.keyboard.press('v');
+  await page.keyboard.press('l');
+  await settled();
+  let scene = await scene_of();
+  assert.ok(Math.abs(length(scene.target) / length(scene.initial) - 1) < 1e-5);
+  const drag = async ([x, y], dx, dy) => {
+    const box = await page.locator('#stage').boundingBox();
+    await page.mouse.move(box.x + x, box.y + y);
+    await page.mouse.down();
+    await page.mouse.move(box.x + x + dx, box.y + y + dy, { steps: 5 });
+    await page.mouse.up();
+    await settled();
+  };
+  const place = (name) => page.evaluate((handle) => nuno_studio.view.handle_places(nuno_studio.app.doc.scene.target)[handle], name);
+  const was = length(scene.target);
+  await drag(await place('ne'), 40, -40);
+  assert.ok(length((await scene_of()).target) > 1.05 * was);
+  await page.keyboard.press('Control+z');
+  await drag(await place('turn'), 60, 20);
+  scene = await scene_of();
+  assert.ok(Math.abs(length(scene.target) / was - 1) < 1e-4, 'a turn keeps the length');
+  await page.keyboard.press('r');
+  await settled();
+  assert.deepEqual((await scene_of()).target[0], scene.target[63]);
+  await page.keyboard.press('p');
+  const end = await page.evaluate(() => nuno_studio.view.to_screen(nuno_studio.app.doc.scene.target[0]));
+  await drag(end, -30, -20);
+  assert.notDeepEqual((await scene_of()).target[0], scene.target[63]);
+  assert.deepEqual((await scene_of()).target[40], [...scene.target].reverse()[40]);
+  await page.keyboard.press('v');
+});
+
+test('the flight is scrubbed, played and flies on', async () => {
+  const slider = await page.locator('#time').boundingBox();
+  await page.mouse.click(slider.x + 0.3 * slider.width, slider.y + slider.height / 2);
+  const time = await page.evaluate(() => nuno_studio.app.time);
+  assert.ok(time > 0.2 && time < 0.8, `${time}`);
+  await page.mouse.click(slider.x + slider.width - 9, slider.y + slider.height / 2);
+  assert.match(await page.textContent('#hint'), /flies on/);
+  await page.click('#play');
+  await becomes(page, () => nuno_studio.app.playing && nuno_studio.app.time > 0.05);
+  await page.click('#play');
+  assert.equal(await page.evaluate(() => nuno_studio.app.playing), false);
+});
+
+test('engines are switched; both with one gain, and each with its own', async () => {
+  await page.click('#engine-side');
+  await settled();
+  const [native, box2d] = [await flight_of('native'), await flight_of('box2d')];
+  assert.equal(box2d.backend, 'box2d');
+  assert.equal(box2d.alpha, native.alpha);
+  assert.equal(await page.locator('#scores .score').count(), 2);
+  await page.click('#engine-native');
+  await settled();
+});
+
+test('a gain is tried along the curve, and the best is taken again', async () => {
+  const best = await flight_of('native');
+  const box = await page.locator('#chart').boundingBox();
+  await page.mouse.click(box.x + 0.45 * box.width, box.y + 0.5 * box.height);
+  await settled();
+  const tried = await flight_of('native');
+  assert.notEqual(tried.alpha, best.alpha);
+  assert.ok(tried.error.mean >= best.error.mean);
+  await page.click('#best');
+  await settled();
+  assert.deepEqual(await flight_of('native'), best);
+});
+
+test('the answer is that of nuno optimize on the saved scene', async () => {
+  await page.fill('#name', 'drawn by hand');
+  await page.keyboard.press('Enter');
+  const saved = await download(() => page.click('#save'));
+  const out = path.join(folder, 'answer.json');
+  execFileSync(program, ['optimize', saved, '--out', out], { stdio: 'ignore' });
+  const expected = JSON.parse(readFileSync(out, 'utf8'));
+  const shown = await flight_of('native');
+  assert.equal(shown.alpha, expected.alpha);
+  assert.deepEqual(shown.error, expected.error);
+  await page.click('#export summary');
+  const result = JSON.parse(readFileSync(await download(() => page.click('#save-result')), 'utf8'));
+  assert.equal(result.alpha, expected.alpha);
+  assert.deepEqual(result.final, expected.final);
+});
+
+test('a reload loses nothing; a saved scene opens as it was', async () => {
+  const scene = await scene_of();
+  const flight = await flight_of('native');
+  await page.reload();
+  await settled();
+  assert.deepEqual(await scene_of(), scene);
+  assert.deepEqual(await flight_of('native'), flight);
+  const saved = path.join(folder, 'drawn by hand.json');
+  await page.click('#new');
+  await settled();
+  assert.notDeepEqual((await scene_of()).target, scene.target);
+  await page.setInputFiles('#file', saved);
+  await settled();
+  assert.deepEqual(await scene_of(), scene);
+  assert.deepEqual(await flight_of('native'), flight);
+  // The address alone is enough for another browser.
+  const other = await new_page({ viewport: { width: 1280, height: 800 } });
+  await other.goto(page.url());
+  await other.reload();
+  await settled(other);
+  assert.deepEqual(await scene_of(other), scene);
+  await other.context().close();
+});
+
+test('a bad scene is refused in the words of the command line', async () => {
+  const scene = await scene_of();
+  const bad = path.join(folder, 'bad.json');
+  writeFileSync(bad, JSON.stringify({ ...scene, cloth: { ...scene.cloth, mass: -1 } }));
+  await page.setInputFiles('#file', bad);
+  await page.locator('#trouble').waitFor({ state: 'visible' });
+  assert.match(await page.textContent('#trouble'), /\/cloth\/mass: -1 is not > 0/);
+  assert.deepEqual(await scene_of(), scene);
+});
+
+test('a phone has everything within its width', async () => {
+  const phone = await new_page({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const [wide, shown] = await phone.evaluate(() => [document.documentElement.scrollWidth, innerWidth]);
+  assert.ok(wide <= shown, `${wide} > ${shown}`);
+  await phone.tap('#engine-box2d');
+  await settled(phone);
+  assert.equal((await flight_of('box2d', phone)).backend, 'box2d');
+  await phone.context().close();
+});
+
+test('every control has a name for a screen reader', async () => {
+  const nameless = await page.evaluate(() => [...document.querySelectorAll('button, input, select, canvas')]
+    .filter((e) => !(e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.length))
+    .map((e) => e.outerHTML.slice(0, 80)));
+  assert.deepEqual(nameless, []);
+});
+
+test('nothing failed on the page', () => assert.deepEqual(page_errors, []));
