@@ -97,10 +97,11 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
                                                double gain) {
   std::unique_ptr<Backend> backend = make_backend(name, file);
   // The largest gain goes with 1/h², and an engine may choose shorter steps than it is asked for.
+  constexpr double most_steps = 50e6;  // of either engine
   double steps = 0;
   while (gain > backend->largest_gain()) {
     steps = 2 * std::max(steps, static_cast<double>(backend->steps()));
-    if (too_long(steps, file)) {
+    if (too_long(steps, file) || steps > most_steps) {
       throw InputError(
           fmt::format("--alpha: {} is not <= {:.4g}, the largest gain that {} steps "
                       "on {} resolve; more would take too long",
