@@ -86,12 +86,15 @@ export class View {
       ctx.restore();
     });
     if (what.forces) {
-      const y = this.height - 64;
-      this.arrow(84, y, force_pixels, 0, colors.force);
       ctx.font = '12px system-ui, sans-serif';
+      const wide = force_pixels + 8 + ctx.measureText(what.forces).width;
+      const x = this.width - wide - 20, y = this.room.top + 22;
+      ctx.fillStyle = colors.paper;
+      ctx.fillRect(x - 8, y - 12, wide + 16, 24);
+      this.arrow(x, y, force_pixels, 0, colors.force);
       ctx.textAlign = 'left';
       ctx.textBaseline = 'middle';
-      ctx.fillText(what.forces, 84 + force_pixels + 8, y);
+      ctx.fillText(what.forces, x + force_pixels + 8, y);
     }
     if (this.views > 1) {
       ctx.fillStyle = colors.line;
