@@ -18,10 +18,10 @@ enum class Hinge {
 };
 
 struct Options {
-  std::optional<double> time_step;  ///< [s], > 0; absent: 1/2000 of the arrival time
+  std::optional<double> time_step;  ///< [s], > 0; absent: 1/1000 of the arrival time
   Hinge hinge = Hinge::soft_weld;
-  int velocity_iterations = 16;  ///< > 0
-  int position_iterations = 4;   ///< > 0
+  int velocity_iterations = 8;  ///< > 0
+  int position_iterations = 4;  ///< > 0
 };
 
 /// The same cloth as a chain of Box2D's rods, joints and springs, in single precision but for the
