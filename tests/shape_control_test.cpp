@@ -59,5 +59,15 @@ TEST(ShapeDifference, DoesNotSeePlace) {
   EXPECT_LT(difference.max, 1e-15);
 }
 
+TEST(ShapeDamping, PullsVelocitiesTowardsThatOfTheReferenceAndSumsToZero) {
+  const Points reference{{0.0, 1.0, -1.0}, {0.5, 0.0, -0.5}};
+  const Points velocities{{3.0, 5.0, 1.5}, {1.0, -2.0, 0.5}};
+  Points forces = Points::Ones(2, 3);  // what is there already stays
+  add_shape_damping(reference, velocities, 0.3, forces);
+  const Points expected = 0.3 * (reference - shape_of(velocities));
+  EXPECT_LT((forces - Points::Ones(2, 3) - expected).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT(expected.rowwise().sum().norm(), 1e-15);
+}
+
 }  // namespace
 }  // namespace nuno
