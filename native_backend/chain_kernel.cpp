@@ -21,7 +21,8 @@
 //     u'ᵢ = u*ᵢ + p·(Tᵢ₊₁·tᵢ·tᵢ₊₁ − 2Tᵢ + Tᵢ₋₁·tᵢ₋₁·tᵢ),
 // where u* is what all other forces make of u, so the tensions solve a symmetric, diagonally
 // dominant tridiagonal system,
-//     (2 + ℓ/(c⁺p))·Tᵢ − cosθᵢ₊₁·Tᵢ₊₁ − cosθᵢ·Tᵢ₋₁ = [u*ᵢ + (EA/c⁺)·(lᵢ − ℓᵢ) + (c⁻/c⁺)·uᵢ]/p,
+//     (2 + ℓ/(c⁺p))·τᵢ − cosθᵢ₊₁·τᵢ₊₁ − cosθᵢ·τᵢ₋₁ = u*ᵢ + (EA/c⁺)·(lᵢ − ℓᵢ) + (c⁻/c⁺)·uᵢ,   τ =
+//     p·T,
 // eliminated on the way up the chain and substituted on the way down.
 
 #include "chain_kernel.h"
@@ -70,12 +71,12 @@ HWY_INLINE T cross(Vec2<T> a, Vec2<T> b) {
   return neg_mul_add(a.y, b.x, a.x * b.y);
 }
 
-/// What the way up the chain leaves for the way down, per segment.
+/// A segment on the way up: first what it is, then its row of the eliminated system.
 template <typename T>
-struct Elimination {
+struct Segment {
   Vec2<T> direction;
-  T offset;  ///< Tᵢ = offset + factor·Tᵢ₊₁
-  T factor;
+  T offset;  ///< first what strain and old rate put on the right; then τᵢ = offset + factor·τᵢ₊₁
+  T factor;  ///< first cosθᵢ of the hinge below
 };
 
 /// Sums over the particles.
@@ -85,116 +86,146 @@ struct Sums {
   Vec2<T> velocity;  ///< only where control is damped
 };
 
-/// One step. `external(j, x, v)` is the force on particle j; returns the sums after the step.
-template <bool damped_hinges, bool damped_control, typename T, typename External>
-HWY_INLINE Sums<T> advance(const ChainPlan& plan, const ChainPlan::Kick& kick, Vec2<T>* x,
-                           Vec2<T>* v, Elimination<T>* segments, External&& external) {
+/// The way up goes strip by strip and in four loops over each, whose iterations wait for little of
+/// each other. A strip is so short that the processor looks beyond its end: while the elimination
+/// waits for its divisions, the next strip begins.
+constexpr Index strip_length = 8;
+
+/// Quantities of the segments or hinges first − 1 … first + strip_length − 1.
+template <typename T>
+struct Strip {
+  Index first = 0;
+  T values[strip_length + 1];
+
+  HWY_INLINE T& operator[](Index i) { return values[i - first + 1]; }
+  HWY_INLINE void advance() {
+    values[0] = values[strip_length];
+    first += strip_length;
+  }
+};
+
+/// On the way up: kicks with all forces but tension, and eliminates the tensions.
+template <bool damped_hinges, typename T, typename External>
+HWY_INLINE void go_up(const ChainPlan& plan, const ChainPlan::Kick& kick, const Vec2<T>* x,
+                      Vec2<T>* v, Segment<T>* segments, External&& external) {
+  using Value = typename Constant<T>::Value;
   const Index n = plan.particles;
   const double* rest_length = plan.rest_length.data();
   const double* spring = plan.hinge_spring.data();
   const double* dashpot = plan.hinge_dashpot.data();
-  const double* diagonal = kick.diagonal.data();
-  const double per_force = 1 / kick.force;
   const T zero = Constant<T>::of(0);
 
-  // On the way up, particle j − 1 is kicked as soon as hinge j is known, and segment j − 2 is
-  // eliminated as soon as both its ends are kicked.
-  Vec2<T> t1{zero, zero}, t2{zero, zero};  // directions of segments j − 1, j − 2
-  T inverse1 = zero;                       // 1/l of segment j − 1
-  T turning1 = zero;                       // φ̇ of segment j − 1
-  T moment1 = zero;                        // of hinge j − 1
-  T load1 = zero, load2 = zero;            // what strain and old rate put on the right-hand side
-  T cosine1 = zero, cosine2 = zero;        // of hinges j − 1, j − 2
-  Vec2<T> shear2{zero, zero};              // of segment j − 2
-  Vec2<T> kicked2{zero, zero};             // velocity of particle j − 2
-  T offset3 = zero, factor3 = zero;        // of segment j − 3
-  for (Index j = 0; j <= n; ++j) {
-    Vec2<T> t{zero, zero};
-    T inverse = zero, turning = zero, moment = zero, load = zero, cosine = zero;
-    if (j + 1 < n) {
-      const Vec2<T> span = x[j + 1] - x[j];
-      const Vec2<T> rate = v[j + 1] - v[j];
+  Strip<T> inverse, turning, moment;  // 1/lᵢ, φ̇ᵢ, Mⱼ
+  Vec2<T> below{zero, zero};          // direction of the segment below the particle
+  T couple_below = zero;
+  const auto kick_particle = [&](Index i, Vec2<T> above, T couple) HWY_ATTR {
+    const Vec2<T> force = external(i, x[i], v[i]);
+    const T vx = scale_add(kick.force, force.x, scale(kick.keep, v[i].x));
+    const T vy = scale_add(kick.force, force.y, shift(-kick.fall, scale(kick.keep, v[i].y)));
+    v[i] = {neg_mul_add(couple_below, below.y, mul_add(couple, above.y, vx)),
+            mul_add(couple_below, below.x, neg_mul_add(couple, above.x, vy))};
+    below = above;
+    couple_below = couple;
+  };
+  T offset = zero, factor = zero;  // of the segment below
+  const auto eliminate = [&](Index i, T cosine_above) HWY_ATTR {
+    Segment<T>& s = segments[i];
+    const Vec2<T> rate = v[i + 1] - v[i];
+    const T right = mul_add(s.direction.x, rate.x, mul_add(s.direction.y, rate.y, s.offset));
+    const Value diagonal = mul_add(Value(rest_length[i]), Value(kick.compliance), Value(2.0));
+    const T pivot = reciprocal_of_difference(diagonal, s.factor, factor);
+    offset = mul_add(s.factor, offset, right) * pivot;
+    factor = cosine_above * pivot;
+    s.offset = offset;
+    s.factor = factor;
+  };
+
+  moment[0] = zero;
+  segments[0].factor = zero;
+  // Hinge j follows segment j, particle j − 1 hinge j, and segment j − 2 both its ends.
+  for (Index first = 0; first < n; first += strip_length) {
+    const Index end = std::min(first + strip_length, n);
+    for (Index i = first; i < std::min(end, n - 1); ++i) {
+      const Vec2<T> span = x[i + 1] - x[i];
+      const Vec2<T> rate = v[i + 1] - v[i];
       const T squared = dot(span, span);
-      inverse = rsqrt(squared);
-      t = inverse * span;
-      load = scale_add(kick.strain, shift(-rest_length[j], squared * inverse),
-                       scale(kick.rate, dot(t, rate)));
-      if constexpr (damped_hinges) turning = cross(t, rate) * inverse;
-      if (j > 0) {
-        cosine = dot(t1, t);
-        moment = scale(spring[j], angle(cross(t1, t), cosine));
-        if constexpr (damped_hinges) moment = scale_add(dashpot[j], turning - turning1, moment);
+      inverse[i] = rsqrt(squared);
+      const Vec2<T> t = inverse[i] * span;
+      segments[i].direction = t;
+      segments[i].offset = scale_add(kick.strain, shift(-rest_length[i], squared * inverse[i]),
+                                     scale(kick.rate, dot(t, rate)));
+      if constexpr (damped_hinges) turning[i] = cross(t, rate) * inverse[i];
+    }
+    for (Index j = std::max<Index>(first, 1); j < std::min(end, n - 1); ++j) {
+      const Vec2<T> before = segments[j - 1].direction, after = segments[j].direction;
+      const T cosine = dot(before, after);
+      segments[j].factor = cosine;
+      moment[j] = scale(spring[j], angle(cross(before, after), cosine));
+      if constexpr (damped_hinges) {
+        moment[j] = scale_add(dashpot[j], turning[j] - turning[j - 1], moment[j]);
       }
     }
-    Vec2<T> shear1{zero, zero}, kicked1{zero, zero};
-    if (j > 0) {
-      const T couple = (moment - moment1) * inverse1;
-      shear1 = {couple * (zero - t1.y), couple * t1.x};
-      const Vec2<T> force = (shear2 - shear1) + external(j - 1, x[j - 1], v[j - 1]);
-      kicked1 = {scale_add(kick.keep, v[j - 1].x, scale(kick.force, force.x)),
-                 scale_add(kick.keep, v[j - 1].y,
-                           scale_add(kick.force, force.y, Constant<T>::of(-kick.fall)))};
-      v[j - 1] = kicked1;
+    if (end == n) moment[n - 1] = zero;
+    for (Index j = std::max<Index>(first, 1); j < end; ++j) {
+      const T couple = (moment[j] - moment[j - 1]) * scale(kick.force, inverse[j - 1]);
+      kick_particle(j - 1, segments[j - 1].direction, couple);
     }
-    if (j > 1) {
-      // cosine1 is of hinge j − 1, between segments j − 2 and j − 1; cosine2 of hinge j − 2.
-      const T free_rate = dot(t2, kicked1 - kicked2);
-      const T right = scale(per_force, free_rate + load2);
-      const T pivot = reciprocal(neg_mul_add(cosine2, factor3, Constant<T>::of(diagonal[j - 2])));
-      const T offset = mul_add(cosine2, offset3, right) * pivot;
-      const T factor = cosine1 * pivot;
-      segments[j - 2] = {t2, offset, factor};
-      offset3 = offset;
-      factor3 = factor;
+    for (Index j = std::max<Index>(first, 2); j < end; ++j) {
+      eliminate(j - 2, segments[j - 1].factor);
     }
-    t2 = t1;
-    t1 = t;
-    inverse1 = inverse;
-    turning1 = turning;
-    moment1 = moment;
-    load2 = load1;
-    load1 = load;
-    cosine2 = cosine1;
-    cosine1 = cosine;
-    shear2 = shear1;
-    kicked2 = kicked1;
+    inverse.advance();
+    turning.advance();
+    moment.advance();
   }
+  kick_particle(n - 1, {zero, zero}, zero);
+  eliminate(n - 2, zero);
+}
 
+/// On the way down: substitutes, adds the tensions to the kick and moves.
+template <bool damped_control, typename T>
+HWY_INLINE Sums<T> go_down(const ChainPlan& plan, Vec2<T>* x, Vec2<T>* v,
+                           const Segment<T>* segments) {
+  const T zero = Constant<T>::of(0);
   Sums<T> sums{{zero, zero}, {zero, zero}};
-  Vec2<T> above{zero, zero};  // tension of the segment above, along it
-  T tension = zero;
-  for (Index i = n; i-- > 0;) {
-    Vec2<T> below{zero, zero};
-    if (i > 0) {
-      tension = mul_add(segments[i - 1].factor, tension, segments[i - 1].offset);
-      below = tension * segments[i - 1].direction;
-    }
-    const Vec2<T> pull = above - below;
-    v[i] = {scale_add(kick.force, pull.x, v[i].x), scale_add(kick.force, pull.y, v[i].y)};
-    x[i] = {scale_add(plan.h, v[i].x, x[i].x), scale_add(plan.h, v[i].y, x[i].y)};
+  Vec2<T> pulled = v[plan.particles - 1];  // by the segment above
+  T tension = zero;                        // τ
+  const auto move = [&](Index i, Vec2<T> velocity) HWY_ATTR {
+    v[i] = velocity;
+    x[i] = {scale_add(plan.h, velocity.x, x[i].x), scale_add(plan.h, velocity.y, x[i].y)};
     sums.position = sums.position + x[i];
-    if constexpr (damped_control) sums.velocity = sums.velocity + v[i];
-    above = below;
+    if constexpr (damped_control) sums.velocity = sums.velocity + velocity;
+  };
+  for (Index i = plan.particles - 1; i-- > 0;) {
+    const Segment<T> s = segments[i];
+    tension = mul_add(s.factor, tension, s.offset);
+    move(i + 1, {neg_mul_add(tension, s.direction.x, pulled.x),
+                 neg_mul_add(tension, s.direction.y, pulled.y)});
+    pulled = {mul_add(tension, s.direction.x, v[i].x), mul_add(tension, s.direction.y, v[i].y)};
   }
+  move(0, pulled);
   return sums;
 }
 
+/// One step. `external(j, x, v)` is the force on particle j; returns the sums after the step.
 template <bool damped_control, typename T, typename External>
 HWY_INLINE Sums<T> advance(const ChainPlan& plan, bool first, Vec2<T>* x, Vec2<T>* v,
-                           Elimination<T>* segments, External&& external) {
+                           Segment<T>* segments, External&& external) {
   const ChainPlan::Kick& kick = first ? plan.first : plan.full;
-  return plan.hinge_dashpot.empty()
-             ? advance<false, damped_control>(plan, kick, x, v, segments, external)
-             : advance<true, damped_control>(plan, kick, x, v, segments, external);
+  if (plan.hinge_dashpot.empty()) {
+    go_up<false>(plan, kick, x, v, segments, external);
+  } else {
+    go_up<true>(plan, kick, x, v, segments, external);
+  }
+  return go_down<damped_control>(plan, x, v, segments);
 }
 
 void step_scalar(const ChainPlan& plan, bool first, const double* forces, double* positions,
                  double* velocities, ScalarScratch& scratch) {
   static_assert(sizeof(Vec2<Real>) == 2 * sizeof(double) &&
-                sizeof(Elimination<Real>) == 4 * sizeof(double));
+                sizeof(Segment<Real>) == 4 * sizeof(double));
   advance<false>(plan, first, reinterpret_cast<Vec2<Real>*>(positions),
                  reinterpret_cast<Vec2<Real>*>(velocities),
-                 reinterpret_cast<Elimination<Real>*>(scratch.values.data()),
+                 reinterpret_cast<Segment<Real>*>(scratch.values.data()),
                  [forces](Index j, const Vec2<Real>&, const Vec2<Real>&) HWY_ATTR {
                    return Vec2<Real>{forces[2 * j], forces[2 * j + 1]};
                  });
@@ -264,7 +295,7 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
   const auto size = static_cast<std::size_t>(n);
   const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
-  const std::unique_ptr<Elimination<T>[]> segments(new Elimination<T>[size]);
+  const std::unique_ptr<Segment<T>[]> segments(new Segment<T>[size]);
   const T zero = Constant<T>::of(0);
   Sums<T> sums{{zero, zero}, {zero, zero}};
   for (Index i = n; i-- > 0;) {
@@ -326,7 +357,7 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
   const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<Pack>[]> aim(new Vec2<Pack>[size]);
-  const std::unique_ptr<Elimination<T>[]> segments(new Elimination<T>[size]);
+  const std::unique_ptr<Segment<T>[]> segments(new Segment<T>[size]);
   // One coordinate of all directions, a direction a lane.
   const auto across = [&](const double* directions, Index coordinate) HWY_ATTR {
     double values[HWY_MAX_BYTES / sizeof(double)] = {};

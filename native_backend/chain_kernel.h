@@ -8,7 +8,7 @@
 
 namespace nuno::native {
 
-/// The constants of one chain in the scheme of chain_kernel-inl.h, the same for every gain.
+/// The constants of one chain in the scheme of chain_kernel.cpp, the same for every gain.
 struct ChainPlan {
   Index particles = 0;
   Index steps = 0;
@@ -21,12 +21,12 @@ struct ChainPlan {
 
   /// One kick of the velocities: v' = keep·v − (0, fall) + force·(forces).
   struct Kick {
-    double keep = 0;               ///< r [1]
-    double fall = 0;               ///< q·g [m/s]
-    double force = 0;              ///< p = q/m [s/kg]
-    double strain = 0;             ///< EA/c⁺, see chain_kernel-inl.h
-    double rate = 0;               ///< c⁻/c⁺
-    std::vector<double> diagonal;  ///< 2 + ℓ/(c⁺·p) [N − 1]
+    double keep = 0;        ///< r [1]
+    double fall = 0;        ///< q·g [m/s]
+    double force = 0;       ///< p = q/m [s/kg]
+    double strain = 0;      ///< EA/c⁺, see chain_kernel.cpp
+    double rate = 0;        ///< c⁻/c⁺
+    double compliance = 0;  ///< 1/(c⁺·p) [1/m]
   };
   Kick first;  ///< from rest to half a step
   Kick full;

@@ -33,8 +33,7 @@ ChainPlan::Kick make_kick(const Chain& chain, double h, double duration, double 
   const double before = stiffness * h * (new_length_weight - 0.5) + damping / 2;
   kick.strain = stiffness / after;
   kick.rate = before / after;
-  const Vector diagonal = 2 + chain.rest_length.array() / (after * kick.force);
-  kick.diagonal.assign(diagonal.begin(), diagonal.end());
+  kick.compliance = 1 / (after * kick.force);
   return kick;
 }
 
