@@ -3,6 +3,7 @@
 #include <nuno/native.h>
 #include <nuno/optimize.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "convergence.h"
 #include "paper_procedure.h"
 #include "problems.h"
+#include "scene_library.h"
 #include "sections.h"
 
 namespace nuno::bench {
@@ -97,7 +99,8 @@ void against_paper(Report& report, Index particles, const Effort& effort) {
   const Objective ours = objective(*native);
   const Objective with_paper = paper.objective();
   const Objective with_exact = exact.objective();
-  const double largest_gain = GlobalSearchOptions().largest_gain * ours.gain_scale;
+  const double largest_gain =
+      std::min(GlobalSearchOptions().largest_gain * ours.gain_scale, ours.largest_gain);
   const double enough = convergence.error(global_search(ours).gain) + tolerance * length;
   std::array<OptimizeSummary, 4> found;
   const std::array<Run, 4> runs = {
@@ -122,7 +125,7 @@ void against_paper(Report& report, Index particles, const Effort& effort) {
                                      convergence.off(exact), convergence.off(exact)};
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const double there = native->errors({&found[i].gain, 1}).front();
-    report.check(found[0].error <= there,
+    report.check(found[0].error <= there + 1e-6 * length,
                  fmt::format("{}: its gain gives {:.6f}, and the minimum found is not above that",
                              names[i], there));
     add_optimum(report, names[i], steps[i], off[i] / length, statistics(times[i]), found[i],
@@ -179,28 +182,41 @@ void alone(Report& report, const Problem& problem, int repetitions) {
   report.check(false, fmt::format("{}: E at the best gain converges", name));
 }
 
+/// The search takes a round more or less by chance, so it is the sum over several scenes.
 void growth(Report& report, int repetitions) {
-  const Problem small_problem = make_problem(straight_to_s(32));
-  const std::unique_ptr<Backend> large = native::make_backend(make_problem(straight_to_s(64)));
-  const std::unique_ptr<Backend> small = native::make_backend(small_problem, large->time_step());
-  report.check(small->steps() == large->steps(), "32 and 64 particles fly in the same steps");
-  const Objective small_objective = objective(*small);
-  const Objective large_objective = objective(*large);
-  OptimizeSummary of_small, of_large;
-  const std::array<Run, 2> runs = {
-      Run{[&] { return (of_small = global_search(small_objective)).error; }},
-      Run{[&] { return (of_large = global_search(large_objective)).error; }},
+  std::vector<Scene> scenes = scene_library::family(5);
+  scenes.push_back(straight_to_s(32));
+  std::vector<std::unique_ptr<Backend>> small, large;
+  for (Scene& scene : scenes) {
+    scene.particles = 64;
+    large.push_back(native::make_backend(make_problem(scene)));
+    scene.particles = 32;
+    small.push_back(native::make_backend(make_problem(scene), large.back()->time_step()));
+    report.check(small.back()->steps() == large.back()->steps(),
+                 fmt::format("{}: 32 and 64 particles fly in the same {} steps", scene.name,
+                             large.back()->steps()));
+  }
+  Index evaluations_small = 0, evaluations_large = 0;
+  const auto search = [](const std::vector<std::unique_ptr<Backend>>& backends, Index& count) {
+    count = 0;
+    double errors = 0;
+    for (const auto& backend : backends) {
+      const OptimizeSummary found = global_search(objective(*backend));
+      count += found.evaluations;
+      errors += found.error;
+    }
+    return errors;
   };
+  const std::array<Run, 2> runs = {Run{[&] { return search(small, evaluations_small); }},
+                                   Run{[&] { return search(large, evaluations_large); }}};
   const OnCores one(1);
-  const auto times = interleave(runs, {repetitions, 0.02}, Clock::cpu);
-  const auto add = [&](const std::string& name, const Backend& backend,
-                       const std::vector<double>& time, const OptimizeSummary& summary) {
-    report.add(name, "steps", "", exactly(static_cast<double>(backend.steps())));
+  const auto times = interleave(runs, {repetitions, 0}, Clock::cpu);
+  const auto add = [&](const std::string& name, const std::vector<double>& time, Index count) {
     report.add(name, "time", "ms", scaled(statistics(time), 1e3));
-    report.add(name, "evaluations", "", exactly(static_cast<double>(summary.evaluations)));
+    report.add(name, "evaluations", "", exactly(static_cast<double>(count)));
   };
-  add("same step, N = 32", *small, times[0], of_small);
-  add("same step, N = 64", *large, times[1], of_large);
+  add(fmt::format("same steps, {} scenes, N = 32", scenes.size()), times[0], evaluations_small);
+  add(fmt::format("same steps, {} scenes, N = 64", scenes.size()), times[1], evaluations_large);
   report.add_ratio("growth_32_to_64", ratio(times[1], times[0]));
 }
 
@@ -221,7 +237,7 @@ void optimum(Report& report, const Options& options) {
           tolerance));
   against_paper(report, 32, options.quick ? Effort{7, 0.01} : Effort{15, 0.02});
   against_paper(report, 64, {options.quick ? 1 : 7, 0});
-  growth(report, options.quick ? 9 : 25);
+  growth(report, options.quick ? 3 : 9);
   const Problem fine = make_problem(straight_to_s(128));
   alone(report, fine, options.quick ? 1 : 7);
   const Index most_steps = native::make_backend(fine)->steps() / (options.quick ? 4 : 1);

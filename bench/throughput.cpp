@@ -160,6 +160,8 @@ void throughput(Report& report, const Options& options) {
     return a.median < b.median ? a : b;
   };
   report.add_ratio("batch_over_b2rope", over_faster_of(first_peer));
+  report.add_ratio("batch_over_b2rope_1_iteration",
+                   ratio(per_step[first_peer + 2], per_step[batch]));
   report.add_ratio("batch_over_box2d", over_faster_of(first_box2d));
 }
 

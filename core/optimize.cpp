@@ -134,27 +134,38 @@ OptimizeSummary steepest_descent(const Objective& objective,
 
 namespace {
 
-/// The gains of a scan: 0, then log-spaced from the smallest to the largest that make sense.
-std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOptions& options) {
-  const double first = options.smallest_gain * objective.gain_scale;
+/// The gains of a scan: 0, then from the smallest to the largest that make sense, evenly spaced in
+/// log(1 + φ/3), where φ = √(α/gain scale) is the phase [rad] that control turns through until
+/// arrival: E(α) swings with φ, and ever less sharply.
+std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOptions& options,
+                               Index count) {
+  constexpr double knee = 3;
+  const auto place = [](double gain) { return std::log1p(std::sqrt(gain) / knee); };
+  const double first = options.smallest_gain;
   const double last = std::max(
-      2 * first, std::min(options.largest_gain * objective.gain_scale, objective.largest_gain));
+      2 * first, std::min(options.largest_gain, objective.largest_gain / objective.gain_scale));
   std::vector<double> gains = {0};
-  for (Index i = 0; i + 1 < options.scan; ++i) {
-    gains.push_back(first * std::pow(last / first, static_cast<double>(i) /
-                                                       static_cast<double>(options.scan - 2)));
+  for (Index i = 0; i + 2 < count; ++i) {
+    const double along = static_cast<double>(i) / static_cast<double>(count - 2);
+    const double phase = knee * std::expm1(std::lerp(place(first), place(last), along));
+    gains.push_back(objective.gain_scale * phase * phase);
   }
+  gains.push_back(objective.gain_scale * last);
   return gains;
 }
 
-// ---- refinement where the objective knows its slope: all valleys at once, a batch a round
-// --------
+// ---- refinement where the objective knows its slope: all valleys at once, a batch a round -----
 
-/// E and its slope at a point of the logarithmic axis u = log α.
+/// E and its slope at a point of the axis u = √α, along which E swings evenly.
 struct Knot {
   double u = 0;
   double error = 0;
   double slope = 0;  // dE/du
+};
+
+struct Promise {
+  double u = 0;
+  double error = 0;
 };
 
 struct Bracket {
@@ -162,7 +173,7 @@ struct Bracket {
 
   /// Where the cubic through both ends and their slopes is least, kept off the ends, and how much
   /// it is there.
-  Evaluation cubic_minimum() const {
+  Promise cubic_minimum() const {
     const double width = right.u - left.u;
     const double chord = (right.error - left.error) / width;
     // E(left + w·s) = E₀ + w·(m₀·s + (3c − 2m₀ − m₁)·s² + (m₀ + m₁ − 2c)·s³), m the slopes, c the
@@ -177,64 +188,89 @@ struct Bracket {
       const double candidate = quadratic >= 0 ? -left.slope / q : -q / (3 * cubic);
       if (candidate > 0 && candidate < 1) s = candidate;
     }
-    s = std::clamp(s, 0.02, 0.98);
-    return {left.u + width * s,
+    return {left.u + width * std::clamp(s, 1e-4, 1 - 1e-4),
             left.error + width * s * (left.slope + s * (quadratic + s * cubic))};
   }
 };
 
-void search_with_slopes(const Objective& objective, const GlobalSearchOptions& options,
-                        OptimizeSummary& summary) {
-  const auto sample = [&](std::span<const double> gains) {
-    std::vector<ErrorSample> samples = objective.samples(gains);
-    summary.evaluations += static_cast<Index>(gains.size());
-    for (std::size_t i = 0; i < gains.size(); ++i) {
-      summary.history.push_back({gains[i], samples[i].error});
+/// Searches between `gains`, which ascend.
+void search_with_slopes(const Objective& objective, std::span<const double> gains,
+                        const GlobalSearchOptions& options, OptimizeSummary& summary) {
+  const auto sample = [&](std::span<const double> at) {
+    std::vector<ErrorSample> samples = objective.samples(at);
+    summary.evaluations += static_cast<Index>(at.size());
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      summary.history.push_back({at[i], samples[i].error});
     }
     return samples;
   };
   const auto knot = [](double gain, const ErrorSample& at) {
-    return Knot{std::log(gain), at.error, at.slope * gain};
+    const double u = std::sqrt(gain);
+    return Knot{u, at.error, 2 * u * at.slope};
   };
 
-  const std::vector<double> gains = scan_gains(objective, options);
   const std::vector<ErrorSample> samples = sample(gains);
+  double best = std::numeric_limits<double>::infinity();
+  for (const ErrorSample& at : samples) best = std::min(best, at.error);
   std::vector<Bracket> brackets;
-  for (std::size_t i = 1; i + 1 < gains.size(); ++i) {
-    const Bracket bracket{knot(gains[i], samples[i]), knot(gains[i + 1], samples[i + 1])};
-    if (std::isfinite(bracket.left.error) && std::isfinite(bracket.right.error)) {
-      brackets.push_back(bracket);
-    }
+  for (std::size_t i = gains[0] > 0 ? 0 : 1; i + 1 < gains.size(); ++i) {
+    brackets.push_back({knot(gains[i], samples[i]), knot(gains[i + 1], samples[i + 1])});
   }
   // Every round goes on in the valleys that now promise to be the deepest: a promise that an
   // evaluation breaks costs a bracket its place.
   for (Index round = 0; round < options.rounds; ++round) {
     std::erase_if(brackets, [&](const Bracket& b) {
-      return b.right.u - b.left.u < options.gain_tolerance || !std::isfinite(b.left.error) ||
-             !std::isfinite(b.right.error);
+      return b.right.u - b.left.u < options.gain_tolerance * b.right.u ||
+             !std::isfinite(b.left.error) || !std::isfinite(b.right.error);
     });
     std::ranges::sort(brackets, {}, [](const Bracket& b) { return b.cubic_minimum().error; });
     const std::size_t refined =
         std::min(brackets.size(), static_cast<std::size_t>(options.brackets));
     if (refined == 0) break;
+    if (round > 0 && brackets[0].cubic_minimum().error > best * (1 - options.error_tolerance))
+      break;
     std::vector<double> candidates;
     for (std::size_t i = 0; i < refined; ++i) {
-      candidates.push_back(std::exp(brackets[i].cubic_minimum().gain));
+      candidates.push_back(std::pow(brackets[i].cubic_minimum().u, 2));
     }
     const std::vector<ErrorSample> found = sample(candidates);
     for (std::size_t i = 0; i < refined; ++i) {
       const Knot middle = knot(candidates[i], found[i]);
       (middle.slope < 0 ? brackets[i].left : brackets[i].right) = middle;
+      best = std::min(best, middle.error);
     }
   }
 }
 
+/// Eight gains about one, a batch: its valley, if little has changed.
+std::vector<double> gains_around(const Objective& objective, double gain) {
+  std::vector<double> gains;
+  for (const double factor : {0.7, 0.8, 0.88, 0.96, 1.04, 1.14, 1.27, 1.45}) {
+    gains.push_back(std::min(factor * gain, objective.largest_gain));
+  }
+  return gains;
+}
+
+Evaluation lowest(const OptimizeSummary& summary) {
+  return *std::ranges::min_element(summary.history, {}, &Evaluation::error);
+}
+
+/// Is there a valley about the warm start? If the lowest gain is an outermost one, it has moved.
+bool search_warm(const Objective& objective, const GlobalSearchOptions& options,
+                 OptimizeSummary& summary) {
+  const double start = options.warm_start.value_or(0);
+  if (!objective.samples || !(start > 0 && start < objective.largest_gain)) return false;
+  const std::vector<double> gains = gains_around(objective, start);
+  search_with_slopes(objective, gains, options, summary);
+  const double gain = lowest(summary).gain;
+  return gain > gains.front() && gain < gains.back();
+}
+
 // ---- refinement by values alone: Brent, one valley after another -----------------------------
 
-void search_by_values(const Objective& objective, const GlobalSearchOptions& options,
-                      OptimizeSummary& summary) {
+void search_by_values(const Objective& objective, std::span<const double> gains,
+                      const GlobalSearchOptions& options, OptimizeSummary& summary) {
   Counter counter(objective);
-  const std::vector<double> gains = scan_gains(objective, options);
   const std::vector<double> errors = counter.errors(gains);
   for (std::size_t i = 0; i < gains.size(); ++i) summary.history.push_back({gains[i], errors[i]});
 
@@ -251,7 +287,7 @@ void search_by_values(const Objective& objective, const GlobalSearchOptions& opt
 
   const int bits = static_cast<int>(std::ceil(-std::log2(options.gain_tolerance)));
   for (const std::size_t valley : valleys) {
-    auto iterations = static_cast<std::uintmax_t>(2 * options.rounds);
+    auto iterations = static_cast<std::uintmax_t>(options.rounds);
     boost::math::tools::brent_find_minima(
         [&](double gain) {
           const double error = counter.error(gain);
@@ -269,15 +305,21 @@ void search_by_values(const Objective& objective, const GlobalSearchOptions& opt
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options) {
   const auto start = Clock::now();
   OptimizeSummary summary;
-  if (objective.samples) {
-    search_with_slopes(objective, options, summary);
+  if (search_warm(objective, options, summary)) {
+    summary.reason = "refined the valley of the warm start";
   } else {
-    search_by_values(objective, options, summary);
+    const Index scan = objective.samples ? options.scan : 2 * options.scan;
+    const std::vector<double> gains = scan_gains(objective, options, scan);
+    if (objective.samples) {
+      search_with_slopes(objective, gains, options, summary);
+    } else {
+      search_by_values(objective, gains, options, summary);
+    }
+    summary.reason =
+        fmt::format("scanned {} gains, refined up to {} valleys", scan, options.brackets);
   }
-  summary.reason =
-      fmt::format("scanned {} gains, refined up to {} valleys", options.scan, options.brackets);
   std::ranges::sort(summary.history, {}, &Evaluation::gain);
-  const Evaluation& best = *std::ranges::min_element(summary.history, {}, &Evaluation::error);
+  const Evaluation best = lowest(summary);
   summary.gain = best.gain;
   summary.error = best.error;
   summary.seconds = seconds_since(start);

@@ -118,5 +118,20 @@ TEST(GlobalSearch, AsksForManyGainsAtOnce) {
   EXPECT_GE(largest, 16u);
 }
 
+TEST(GlobalSearch, StartsWarmInTheValleyOfTheLastOptimum) {
+  Objective objective = made_of(bowl);
+  objective.samples = [](std::span<const double> gains) {
+    std::vector<ErrorSample> samples;
+    for (const double gain : gains) samples.push_back({bowl(gain), 2 * (gain - 3)});
+    return samples;
+  };
+  const OptimizeSummary cold = global_search(objective);
+  const OptimizeSummary warm = global_search(objective, {.warm_start = 2.9});
+  EXPECT_NEAR(warm.gain, 3, 1e-3);
+  EXPECT_LT(warm.evaluations, cold.evaluations);
+  // A valley that has moved away is looked for everywhere.
+  EXPECT_NEAR(global_search(objective, {.warm_start = 0.5}).gain, 3, 1e-3);
+}
+
 }  // namespace
 }  // namespace nuno

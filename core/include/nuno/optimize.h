@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,15 +62,19 @@ OptimizeSummary steepest_descent(const Objective& objective,
                                  const SteepestDescentOptions& options = {});
 
 struct GlobalSearchOptions {
-  double smallest_gain = 1e-2;   ///< of the scan, in gain scales, > 0
-  double largest_gain = 1e5;     ///< of the scan, in gain scales; cut to the objective's largest
-  Index scan = 72;               ///< gains of the scan: 0 and log-spaced ones, ≥ 4
-  Index brackets = 8;            ///< valleys that are refined, the deepest first, ≥ 1
-  Index rounds = 6;              ///< of refinement, ≥ 1; by values, two rollouts each
-  double gain_tolerance = 1e-6;  ///< relative; a valley that is known as well is done
+  double smallest_gain = 1e-2;  ///< of the scan, in gain scales, > 0
+  double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's largest
+  Index scan = 40;              ///< gains of the scan, 0 among them, ≥ 4; twice as many by values
+  Index brackets = 8;           ///< valleys that are refined, the deepest first, ≥ 1
+  Index rounds = 12;            ///< of refinement at most, ≥ 1; by values, a rollout each
+  double gain_tolerance = 1e-6;   ///< relative; a valley that is known as well is done
+  double error_tolerance = 1e-9;  ///< relative; done when no valley promises to be so much deeper
+  /// The best gain of a scene that differs little [N/m]: with slopes, its valley is searched, and
+  /// the whole range only if it has moved far.
+  std::optional<double> warm_start = {};
 };
 
-/// A log-spaced scan, then a refinement of the deepest valleys: by cubics through errors and exact
+/// A scan, then a refinement of the deepest valleys: by cubics through errors and exact
 /// slopes, a round for all valleys in one batch, or, for an objective without slopes, by Brent's
 /// method in one valley after another. Never worse than any gain that it has tried.
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options = {});
