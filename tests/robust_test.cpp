@@ -39,7 +39,7 @@ TEST(RobustObjective, MovesACalmOptimumHardly) {
 
 TEST(RobustObjective, PrefersAnAnswerThatADisturbanceDoesNotDecide) {
   // The deepest valley of this scene lies where the cloth buckles; another is nearly as deep.
-  const auto backend = native::make_backend(make_problem(scene_library::family_member(39)));
+  const auto backend = native::make_backend(make_problem(scene_library::figure_throws()[0]));
   const Objective averaged = robust_objective(*backend);
   const OptimizeSummary plain = global_search(objective(*backend));
   const OptimizeSummary robust = global_search(averaged);
@@ -48,7 +48,7 @@ TEST(RobustObjective, PrefersAnAnswerThatADisturbanceDoesNotDecide) {
   EXPECT_GT(fragile, 1.1 * plain.error);    // a disturbance undoes the answer
   EXPECT_LT(robust.error, 0.95 * fragile);  // on average the other one is better,
   const double undisturbed = rollout(*backend, robust.gain).error.mean;
-  EXPECT_NEAR(robust.error, undisturbed, 0.02 * undisturbed);  // with or without disturbance,
+  EXPECT_NEAR(robust.error, undisturbed, 0.05 * undisturbed);  // with or without disturbance,
   EXPECT_LT(growth(robust.gain), 1e-2 * growth(plain.gain));   // and it hangs on less
 }
 

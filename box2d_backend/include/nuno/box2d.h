@@ -11,7 +11,7 @@ namespace nuno::box2d {
 enum class Hinge {
   /// A revolute joint and a soft distance joint on either side of it. Follows the hinge's law to
   /// 2 % up to a turning angle of 1.7 rad (97°) and ends there: a scene that starts beyond is
-  /// refused, a flight that gets there has diverged. Three times as slow.
+  /// refused, a flight that gets there has diverged. Two to three times as slow.
   spring_pair,
   /// One soft weld joint: revolute joint and linear torsion spring in one, at any angle.
   soft_weld
