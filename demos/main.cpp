@@ -98,7 +98,7 @@ ExitStatus fail(ExitStatus status, const std::string& message) {
 
 /// What was wrong with the command line, in the words of all our messages.
 std::string explain(const CLI::App& app, const CLI::ParseError& error) {
-  const std::string what = error.what();
+  std::string what = error.what();
   if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
     const std::string extra = app.remaining(true).front();
     if (extra.starts_with("-")) return fmt::format("{}: is not a known option", extra);
@@ -298,25 +298,32 @@ ExitStatus run(int argc, char** argv) {
   return chosen();
 }
 
+/// Runs the program and says what went wrong, if anything did.
+ExitStatus run_and_complain(int argc, char** argv) {
+  try {
+    const ExitStatus status = run(argc, argv);
+    require_standard_output_written();
+    return status;
+  } catch (const InputError& error) {
+    return fail(ExitStatus::bad_input, error.what());
+  } catch (const OutputError& error) {
+    return fail(ExitStatus::unwritable, error.what());
+  } catch (const std::system_error& error) {  // fmt::print's, where nothing takes the text
+    return fail(ExitStatus::unwritable, error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ExitStatus::bad_input, "the scene needs more memory than there is");
+  }
+}
+
 }  // namespace
 }  // namespace nuno
 
 int main(int argc, char** argv) {
-  using namespace nuno;
   // A reader that leaves early is an output that cannot be written, not a silent death.
   std::signal(SIGPIPE, SIG_IGN);
-  ExitStatus status;
   try {
-    status = run(argc, argv);
-    require_standard_output_written();
-  } catch (const InputError& error) {
-    status = fail(ExitStatus::bad_input, error.what());
-  } catch (const OutputError& error) {
-    status = fail(ExitStatus::unwritable, error.what());
-  } catch (const std::system_error& error) {  // fmt::print's, where nothing takes the text
-    status = fail(ExitStatus::unwritable, error.what());
-  } catch (const std::bad_alloc&) {
-    status = fail(ExitStatus::bad_input, "the scene needs more memory than there is");
+    return static_cast<int>(nuno::run_and_complain(argc, argv));
+  } catch (...) {  // not even the complaint could be written
+    return static_cast<int>(nuno::ExitStatus::unwritable);
   }
-  return static_cast<int>(status);
 }

@@ -333,7 +333,7 @@ class TemporaryFolder {
 
 /// What `nuno render` makes of the result.
 Answer film_answer(const std::string& body, const Options& options, const Turn& turn) {
-  const Answer result = result_answer(body, options, turn);
+  Answer result = result_answer(body, options, turn);
   if (result.status != 200) return result;
   if (const double time = parse_scene_file(body, scene_name).scene.arrival_time;
       time > longest_film) {
