@@ -46,6 +46,12 @@ HWY_BEFORE_NAMESPACE();
 namespace nuno::native {
 namespace HWY_NAMESPACE {
 
+// For lambdas: compiled for the target and always inlined. One that GCC 12 leaves on its own, as it
+// does in sanitized builds, finds its captures broken where the caller's stack is realigned for
+// wide vectors.
+#undef NUNO_INLINE_LAMBDA
+#define NUNO_INLINE_LAMBDA __attribute__((always_inline)) HWY_ATTR
+
 template <typename T>
 struct Vec2 {
   T x, y;
@@ -118,7 +124,7 @@ HWY_INLINE void go_up(const ChainPlan& plan, const ChainPlan::Kick& kick, const 
   Strip<T> inverse, turning, moment;  // 1/lᵢ, φ̇ᵢ, Mⱼ
   Vec2<T> below{zero, zero};          // direction of the segment below the particle
   T couple_below = zero;
-  const auto kick_particle = [&](Index i, Vec2<T> above, T couple) HWY_ATTR {
+  const auto kick_particle = [&](Index i, Vec2<T> above, T couple) NUNO_INLINE_LAMBDA {
     const Vec2<T> force = external(i, x[i], v[i]);
     const T vx = scale_add(kick.force, force.x, scale(kick.keep, v[i].x));
     const T vy = scale_add(kick.force, force.y, shift(-kick.fall, scale(kick.keep, v[i].y)));
@@ -128,7 +134,7 @@ HWY_INLINE void go_up(const ChainPlan& plan, const ChainPlan::Kick& kick, const 
     couple_below = couple;
   };
   T offset = zero, factor = zero;  // of the segment below
-  const auto eliminate = [&](Index i, T cosine_above) HWY_ATTR {
+  const auto eliminate = [&](Index i, T cosine_above) NUNO_INLINE_LAMBDA {
     Segment<T>& s = segments[i];
     const Vec2<T> rate = v[i + 1] - v[i];
     const T right = mul_add(s.direction.x, rate.x, mul_add(s.direction.y, rate.y, s.offset));
@@ -189,7 +195,7 @@ HWY_INLINE Sums<T> go_down(const ChainPlan& plan, Vec2<T>* x, Vec2<T>* v,
   Sums<T> sums{{zero, zero}, {zero, zero}};
   Vec2<T> pulled = v[plan.particles - 1];  // by the segment above
   T tension = zero;                        // τ
-  const auto move = [&](Index i, Vec2<T> velocity) HWY_ATTR {
+  const auto move = [&](Index i, Vec2<T> velocity) NUNO_INLINE_LAMBDA {
     v[i] = velocity;
     x[i] = {scale_add(plan.h, velocity.x, x[i].x), scale_add(plan.h, velocity.y, x[i].y)};
     sums.position = sums.position + x[i];
@@ -226,7 +232,7 @@ void step_scalar(const ChainPlan& plan, bool first, const double* forces, double
   advance<false>(plan, first, reinterpret_cast<Vec2<Real>*>(positions),
                  reinterpret_cast<Vec2<Real>*>(velocities),
                  reinterpret_cast<Segment<Real>*>(scratch.values.data()),
-                 [forces](Index j, const Vec2<Real>&, const Vec2<Real>&) HWY_ATTR {
+                 [forces](Index j, const Vec2<Real>&, const Vec2<Real>&) NUNO_INLINE_LAMBDA {
                    return Vec2<Real>{forces[2 * j], forces[2 * j + 1]};
                  });
 }
@@ -319,7 +325,7 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
     const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
     sums = advance<damped_control>(
         plan, step == 0, x.get(), v.get(), segments.get(),
-        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) HWY_ATTR {
+        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
           Vec2<T> force{gain * shift(shape[2 * j], center.x - position.x),
                         gain * shift(shape[2 * j + 1], center.y - position.y)};
           if constexpr (damped_control) {
@@ -359,7 +365,7 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
   const std::unique_ptr<Vec2<Pack>[]> aim(new Vec2<Pack>[size]);
   const std::unique_ptr<Segment<T>[]> segments(new Segment<T>[size]);
   // One coordinate of all directions, a direction a lane.
-  const auto across = [&](const double* directions, Index coordinate) HWY_ATTR {
+  const auto across = [&](const double* directions, Index coordinate) NUNO_INLINE_LAMBDA {
     double values[HWY_MAX_BYTES / sizeof(double)] = {};
     for (Index lane = 0; lane < count; ++lane) {
       values[lane] = directions[lane * 2 * n + coordinate];
@@ -387,7 +393,7 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
     const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
     sums = advance<damped_control>(
         plan, step == 0, x.get(), v.get(), segments.get(),
-        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) HWY_ATTR {
+        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
           const Vec2<T> place{with_slopes(shape[2 * j], share * aim[j].x),
                               with_slopes(shape[2 * j + 1], share * aim[j].y)};
           const Vec2<T> miss = place + (center - position);
