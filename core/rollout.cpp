@@ -20,29 +20,27 @@ class Recorder {
   Recorder(double frames_per_second, double arrival_time, Rollout& rollout)
       : rate_(frames_per_second), arrival_time_(arrival_time), rollout_(rollout) {}
 
-  void record(double time_before, const Points& before, double time, const Points& after,
-              bool arrived) {
+  /// After every step, and before the first.
+  void record(double time, const Simulation& cloth, bool arrived) {
     if (rate_ <= 0) return;
     for (; due() < arrival_time_ * (1 - 1e-9) && due() <= time; ++frame_) {
-      const double along = (due() - time_before) / (time - time_before);
-      keep(due(), before + along * (after - before));
+      // A step moves at its mean velocity.
+      keep(due(), cloth.positions() - (time - due()) * cloth.velocities());
     }
-    if (arrived) keep(arrival_time_, after);
+    if (arrived) keep(arrival_time_, cloth.positions());
   }
-
-  void keep(double time, const Points& positions) {
-    rollout_.frame_times.push_back(time);
-    rollout_.frame_positions.push_back(positions);
-  }
-
-  bool due_by(double time) const { return rate_ > 0 && due() <= time; }
 
  private:
+  void keep(double time, Points positions) {
+    rollout_.frame_times.push_back(time);
+    rollout_.frame_positions.push_back(std::move(positions));
+  }
+
   double due() const { return static_cast<double>(frame_) / rate_; }
 
   double rate_;
   double arrival_time_;
-  Index frame_ = 1;  // frame 0 is the initial shape
+  Index frame_ = 0;
   Rollout& rollout_;
 };
 
@@ -76,39 +74,28 @@ Rollout rollout(const Backend& backend, double gain, const RolloutOptions& optio
   return rollout(backend, gain, options, backend.problem().chain.initial);
 }
 
-Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options,
-                const Points& initial) {
-  assert(gain >= 0);
+namespace {
+
+/// Steps until arrival or divergence, which it tells `result`, as it does the strain on the way.
+/// Returns the sum of the squared control forces [N²].
+double fly(const Backend& backend, Simulation& cloth, Recorder& recorder, Rollout& result) {
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
-  const double damping = shape_damping(problem.damping_ratio, gain, problem.chain.particle_mass);
+  const double damping =
+      shape_damping(problem.damping_ratio, result.gain, problem.chain.particle_mass);
   ReferenceMotion reference(problem, h);
-
-  Rollout result;
-  result.gain = gain;
-  result.launch_velocity = launch(backend);
-  const std::unique_ptr<Simulation> cloth = backend.start(initial, result.launch_velocity);
-  Recorder recorder(options.frames_per_second, problem.arrival_time, result);
-  if (options.frames_per_second > 0) recorder.keep(0, cloth->positions());
-
   Points forces = Points::Zero(2, problem.chain.particles());
-  Points before;
   double squared_force = 0;
+  recorder.record(0, cloth, false);
   for (Index n = 0; n < backend.steps(); ++n) {
-    if (gain > 0) {
-      shape_control(reference.shape(), cloth->positions(), gain, forces);
-      if (damping > 0) {
-        add_shape_damping(reference.velocity(), cloth->velocities(), damping, forces);
-      }
+    if (result.gain > 0) {
+      shape_control(reference.shape(), cloth.positions(), result.gain, forces);
+      if (damping > 0) add_shape_damping(reference.velocity(), cloth.velocities(), damping, forces);
       squared_force += forces.squaredNorm();
     }
-    const bool arriving = n + 1 == backend.steps();
-    const double time = static_cast<double>(n + 1) * h;
-    const bool frame_due = arriving || recorder.due_by(time);
-    if (frame_due) before = cloth->positions();
-    cloth->step(forces);
+    cloth.step(forces);
     reference.advance();
-    const double strain = largest_strain(problem.chain, cloth->positions());
+    const double strain = largest_strain(problem.chain, cloth.positions());
     if (!(strain < torn_strain)) {
       result.status = RolloutStatus::diverged;
       result.diverged_at_step = n + 1;
@@ -117,8 +104,23 @@ Rollout rollout(const Backend& backend, double gain, const RolloutOptions& optio
       break;
     }
     result.max_strain = std::max(result.max_strain, strain);
-    if (frame_due) recorder.record(time - h, before, time, cloth->positions(), arriving);
+    recorder.record(static_cast<double>(n + 1) * h, cloth, n + 1 == backend.steps());
   }
+  return squared_force;
+}
+
+}  // namespace
+
+Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options,
+                const Points& initial) {
+  assert(gain >= 0);
+  const Problem& problem = backend.problem();
+  Rollout result;
+  result.gain = gain;
+  result.launch_velocity = launch(backend);
+  const std::unique_ptr<Simulation> cloth = backend.start(initial, result.launch_velocity);
+  Recorder recorder(options.frames_per_second, problem.arrival_time, result);
+  const double squared_force = fly(backend, *cloth, recorder, result);
 
   result.final = cloth->positions();
   if (result.status == RolloutStatus::ok) {

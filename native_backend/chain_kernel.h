@@ -12,8 +12,8 @@ namespace nuno::native {
 struct ChainPlan {
   Index particles = 0;
   Index steps = 0;
-  double h = 0;                       ///< time step [s]
-  std::vector<double> rest_length;    ///< ℓ [N − 1]
+  double h = 0;                         ///< time step [s]
+  std::span<const double> rest_length;  ///< ℓ [N − 1], the chain's own
   std::vector<double> hinge_spring;   ///< EI/ℓ̄ of the hinge at each particle, 0 at the ends [N]
   std::vector<double> hinge_dashpot;  ///< ηI/ℓ̄ [N]; empty where the hinges have no damping
   double particle_mass = 0;           ///< m [kg]

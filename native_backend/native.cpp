@@ -37,13 +37,14 @@ ChainPlan::Kick make_kick(const Chain& chain, double h, double duration, double 
   return kick;
 }
 
+/// Of a problem that outlives it.
 ChainPlan make_plan(const Problem& problem, Index steps) {
   const Chain& chain = problem.chain;
   ChainPlan plan;
   plan.particles = chain.particles();
   plan.steps = steps;
   plan.h = problem.arrival_time / static_cast<double>(steps);
-  plan.rest_length.assign(chain.rest_length.begin(), chain.rest_length.end());
+  plan.rest_length = {chain.rest_length.data(), static_cast<std::size_t>(chain.particles() - 1)};
   const auto at_hinges = [&](double value) {
     std::vector<double> result(static_cast<std::size_t>(chain.particles()), 0.0);
     for (Index i = 0; i < chain.hinge_length.size(); ++i) {
@@ -82,8 +83,8 @@ class ChainSimulation final : public Simulation {
 
 class NativeBackend final : public Backend {
  public:
-  NativeBackend(const Problem& problem, Index steps)
-      : Backend(problem, steps), plan_(make_plan(problem, steps)) {}
+  NativeBackend(Problem problem, Index steps)
+      : Backend(std::move(problem), steps), plan_(make_plan(this->problem(), steps)) {}
 
   std::string_view name() const override { return "native"; }
 

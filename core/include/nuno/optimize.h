@@ -64,11 +64,11 @@ OptimizeSummary steepest_descent(const Objective& objective,
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;  ///< of the scan, in gain scales, > 0
   double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's largest
-  Index scan = 40;              ///< gains of the scan, 0 among them, ≥ 4; twice as many by values
+  Index scan = 32;              ///< gains of the scan, 0 among them, ≥ 4; twice as many by values
   Index brackets = 8;           ///< valleys that are refined, the deepest first, ≥ 1
   Index rounds = 12;            ///< of refinement at most, ≥ 1; by values, a rollout each
   double gain_tolerance = 1e-6;   ///< relative; a valley that is known as well is done
-  double error_tolerance = 1e-9;  ///< relative; done when no valley promises to be so much deeper
+  double error_tolerance = 1e-6;  ///< relative; done when no valley promises to be so much deeper
   /// The best gain of a scene that differs little [N/m]: with slopes, its valley is searched, and
   /// the whole range only if it has moved far.
   std::optional<double> warm_start = {};
