@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <list>
 // Boost 1.74's header needs it and does not include it.
 #include <boost/math/tools/minima.hpp>
 #include <cstdint>
@@ -135,11 +136,11 @@ OptimizeSummary steepest_descent(const Objective& objective,
 namespace {
 
 /// The gains of a scan: 0, then from the smallest to the largest that make sense, evenly spaced in
-/// log(1 + φ/3), where φ = √(α/gain scale) is the phase [rad] that control turns through until
+/// log(1 + φ/6), where φ = √(α/gain scale) is the phase [rad] that control turns through until
 /// arrival: E(α) swings with φ, and ever less sharply.
 std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOptions& options,
                                Index count) {
-  constexpr double knee = 3;
+  constexpr double knee = 6;
   const auto place = [](double gain) { return std::log1p(std::sqrt(gain) / knee); };
   const double first = options.smallest_gain;
   const double last = std::max(
@@ -154,13 +155,12 @@ std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOpt
   return gains;
 }
 
-// ---- refinement where the objective knows its slope: all valleys at once, a batch a round -----
+// ---- refinement where the objective knows its derivatives: all valleys at once, a batch a round
 
-/// E and its slope at a point of the axis u = √α, along which E swings evenly.
+/// One gain on the axis u = √α, along which the arrival swings evenly.
 struct Knot {
   double u = 0;
-  double error = 0;
-  double slope = 0;  // dE/du
+  ErrorSample sample;
 };
 
 struct Promise {
@@ -168,76 +168,97 @@ struct Promise {
   double error = 0;
 };
 
+/// Between two knots every particle arrives on a smooth path, taken for the cubic through its ends
+/// and their derivatives. E, the mean distance from the target, is not so smooth, and is read off
+/// those paths.
 struct Bracket {
-  Knot left, right;
+  const Knot* left;
+  const Knot* right;
+  Promise promise;  ///< the least error on the paths
+  double hope = 0;  ///< how little it may be: the promise less what the last one nearby was off
 
-  /// Where the cubic through both ends and their slopes is least, kept off the ends, and how much
-  /// it is there.
-  Promise cubic_minimum() const {
-    const double width = right.u - left.u;
-    const double chord = (right.error - left.error) / width;
-    // E(left + w·s) = E₀ + w·(m₀·s + (3c − 2m₀ − m₁)·s² + (m₀ + m₁ − 2c)·s³), m the slopes, c the
-    // chord
-    const double quadratic = 3 * chord - 2 * left.slope - right.slope;
-    const double cubic = left.slope + right.slope - 2 * chord;
-    const double root = quadratic * quadratic - 3 * cubic * left.slope;
-    double s = left.error < right.error ? 0 : 1;
-    if (root >= 0) {
-      // The root with positive curvature, in the form that does not cancel.
-      const double q = quadratic + std::copysign(std::sqrt(root), quadratic);
-      const double candidate = quadratic >= 0 ? -left.slope / q : -q / (3 * cubic);
-      if (candidate > 0 && candidate < 1) s = candidate;
+  Bracket(const Knot& from, const Knot& to, double doubt) : left(&from), right(&to) {
+    constexpr int cells = 8;
+    double least = std::numeric_limits<double>::infinity();
+    int cell = 0;
+    for (int i = 0; i <= cells; ++i) {
+      const double error = error_at(static_cast<double>(i) / cells);
+      if (error < least) {
+        least = error;
+        cell = i;
+      }
     }
-    return {left.u + width * std::clamp(s, 1e-4, 1 - 1e-4),
-            left.error + width * s * (left.slope + s * (quadratic + s * cubic))};
+    const double low = std::max(cell - 1, 0), high = std::min(cell + 1, cells);
+    const auto [s, error] = boost::math::tools::brent_find_minima(
+        [this](double at) { return error_at(at); }, low / cells, high / cells, 14);
+    promise = {std::lerp(left->u, right->u, std::clamp(s, 1e-4, 1 - 1e-4)), error};
+    hope = error - doubt;
+  }
+
+  double width() const { return right->u - left->u; }
+
+ private:
+  double error_at(double s) const {
+    const double t = 1 - s;
+    const double from = t * t * (1 + 2 * s), to = s * s * (1 + 2 * t);
+    // d/du = 2u·d/dα
+    const double leaving = 2 * left->u * s * t * t * width();
+    const double arriving = -2 * right->u * s * s * t * width();
+    return (from * left->sample.miss + to * right->sample.miss + leaving * left->sample.miss_slope +
+            arriving * right->sample.miss_slope)
+        .colwise()
+        .norm()
+        .mean();
   }
 };
 
 /// Searches between `gains`, which ascend.
 void search_with_slopes(const Objective& objective, std::span<const double> gains,
                         const GlobalSearchOptions& options, OptimizeSummary& summary) {
+  double best = std::numeric_limits<double>::infinity();
   const auto sample = [&](std::span<const double> at) {
     std::vector<ErrorSample> samples = objective.samples(at);
     summary.evaluations += static_cast<Index>(at.size());
+    std::vector<Knot> knots;
     for (std::size_t i = 0; i < at.size(); ++i) {
       summary.history.push_back({at[i], samples[i].error});
+      best = std::min(best, samples[i].error);
+      knots.push_back({std::sqrt(at[i]), std::move(samples[i])});
     }
-    return samples;
+    return knots;
   };
-  const auto knot = [](double gain, const ErrorSample& at) {
-    const double u = std::sqrt(gain);
-    return Knot{u, at.error, 2 * u * at.slope};
+  std::list<Knot> knots;
+  std::vector<Bracket> brackets;
+  const auto add_bracket = [&](const Knot& left, const Knot& right, double doubt) {
+    // From gain 0 on, the derivative along u of damped control is not u's own.
+    if (left.u == 0 || right.u - left.u < options.gain_tolerance * right.u) return;
+    if (std::isfinite(left.sample.error) && std::isfinite(right.sample.error)) {
+      brackets.emplace_back(left, right, doubt);
+    }
   };
 
-  const std::vector<ErrorSample> samples = sample(gains);
-  double best = std::numeric_limits<double>::infinity();
-  for (const ErrorSample& at : samples) best = std::min(best, at.error);
-  std::vector<Bracket> brackets;
-  for (std::size_t i = gains[0] > 0 ? 0 : 1; i + 1 < gains.size(); ++i) {
-    brackets.push_back({knot(gains[i], samples[i]), knot(gains[i + 1], samples[i + 1])});
+  for (Knot& knot : sample(gains)) {
+    knots.push_back(std::move(knot));
+    if (knots.size() > 1) add_bracket(*std::prev(knots.end(), 2), knots.back(), 0);
   }
-  // Every round goes on in the valleys that now promise to be the deepest: a promise that an
-  // evaluation breaks costs a bracket its place.
+  // Every round goes on in the brackets that now promise the least.
   for (Index round = 0; round < options.rounds; ++round) {
-    std::erase_if(brackets, [&](const Bracket& b) {
-      return b.right.u - b.left.u < options.gain_tolerance * b.right.u ||
-             !std::isfinite(b.left.error) || !std::isfinite(b.right.error);
-    });
-    std::ranges::sort(brackets, {}, [](const Bracket& b) { return b.cubic_minimum().error; });
+    std::ranges::sort(brackets, {}, [](const Bracket& b) { return b.hope; });
     const std::size_t refined =
         std::min(brackets.size(), static_cast<std::size_t>(options.brackets));
     if (refined == 0) break;
-    if (round > 0 && brackets[0].cubic_minimum().error > best * (1 - options.error_tolerance))
-      break;
+    if (round > 0 && brackets[0].hope > best * (1 - options.error_tolerance)) break;
     std::vector<double> candidates;
+    const auto unrefined = brackets.begin() + static_cast<std::ptrdiff_t>(refined);
+    const std::vector<Bracket> split(brackets.begin(), unrefined);
+    brackets.erase(brackets.begin(), unrefined);
+    for (const Bracket& bracket : split) candidates.push_back(std::pow(bracket.promise.u, 2));
+    std::vector<Knot> found = sample(candidates);
     for (std::size_t i = 0; i < refined; ++i) {
-      candidates.push_back(std::pow(brackets[i].cubic_minimum().u, 2));
-    }
-    const std::vector<ErrorSample> found = sample(candidates);
-    for (std::size_t i = 0; i < refined; ++i) {
-      const Knot middle = knot(candidates[i], found[i]);
-      (middle.slope < 0 ? brackets[i].left : brackets[i].right) = middle;
-      best = std::min(best, middle.error);
+      const Knot& middle = knots.emplace_back(std::move(found[i]));
+      const double doubt = 0.5 * std::abs(middle.sample.error - split[i].promise.error);
+      add_bracket(*split[i].left, middle, doubt);
+      add_bracket(middle, *split[i].right, doubt);
     }
   }
 }
@@ -308,7 +329,7 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
   if (search_warm(objective, options, summary)) {
     summary.reason = "refined the valley of the warm start";
   } else {
-    const Index scan = objective.samples ? options.scan : 2 * options.scan;
+    const Index scan = objective.samples ? options.scan : 3 * options.scan;
     const std::vector<double> gains = scan_gains(objective, options, scan);
     if (objective.samples) {
       search_with_slopes(objective, gains, options, summary);

@@ -171,17 +171,17 @@ class NativeBackend final : public Backend {
       const Eigen::Map<const Points> final(finals.data() + lane * size, 2, target.cols());
       ErrorSample& sample = samples[static_cast<std::size_t>(lane)];
       if (is_torn(problem().chain, final)) {
-        sample = {std::numeric_limits<double>::infinity(), 0};
+        sample.error = std::numeric_limits<double>::infinity();
         continue;
       }
       sample.error = arrival_error(final, target).mean;
       if (!with_slopes) continue;
-      const Eigen::Map<const Points> tangent(tangents.data() + lane * size, 2, target.cols());
+      sample.miss = final - target;
+      sample.miss_slope = Eigen::Map<const Points>(tangents.data() + lane * size, 2, target.cols());
       double slope = 0;
       for (Index i = 0; i < target.cols(); ++i) {
-        const Vector miss = final.col(i) - target.col(i);
-        const double distance = miss.norm();
-        if (distance > 0) slope += miss.dot(tangent.col(i)) / distance;
+        const double distance = sample.miss.col(i).norm();
+        if (distance > 0) slope += sample.miss.col(i).dot(sample.miss_slope.col(i)) / distance;
       }
       sample.slope = slope / static_cast<double>(target.cols());
     }

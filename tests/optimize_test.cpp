@@ -122,7 +122,11 @@ TEST(GlobalSearch, StartsWarmInTheValleyOfTheLastOptimum) {
   Objective objective = made_of(bowl);
   objective.samples = [](std::span<const double> gains) {
     std::vector<ErrorSample> samples;
-    for (const double gain : gains) samples.push_back({bowl(gain), 2 * (gain - 3)});
+    for (const double gain : gains) {
+      // One particle that arrives E(α) beside its target.
+      samples.push_back({bowl(gain), 2 * (gain - 3), Eigen::Vector2d(bowl(gain), 0),
+                         Eigen::Vector2d(2 * (gain - 3), 0)});
+    }
     return samples;
   };
   const OptimizeSummary cold = global_search(objective);

@@ -32,10 +32,12 @@ class Simulation {
   virtual const Points& velocities() const = 0;
 };
 
-/// Error at arrival for one gain, and its derivative where it was asked for.
+/// How one gain arrives, and the derivatives with respect to it.
 struct ErrorSample {
-  double error = 0;  ///< E(α) [m]; +∞ where the rollout diverged
-  double slope = 0;  ///< dE/dα [m²/N]
+  double error = 0;   ///< E(α) [m]; +∞ where the rollout diverged
+  double slope = 0;   ///< dE/dα [m²/N]
+  Points miss;        ///< final positions less the target [2 × N], m; empty where it diverged
+  Points miss_slope;  ///< its derivative [2 × N], m²/N
 };
 
 /// An engine, made ready for one problem: const, and shared by any number of threads.

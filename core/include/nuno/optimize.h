@@ -14,7 +14,7 @@ namespace nuno {
 struct Objective {
   /// E at each gain [m]; +∞ where a rollout diverged.
   std::function<std::vector<double>(std::span<const double> gains)> errors;
-  /// E and dE/dα together; empty for an engine that knows no derivative.
+  /// E, the arrivals and their derivatives; empty for an engine that knows none.
   std::function<std::vector<ErrorSample>(std::span<const double> gains)> samples;
   /// m/t₀² [N/m]: the gain whose oscillation turns by one radian until arrival.
   double gain_scale = 1;
@@ -64,9 +64,9 @@ OptimizeSummary steepest_descent(const Objective& objective,
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;  ///< of the scan, in gain scales, > 0
   double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's largest
-  Index scan = 32;              ///< gains of the scan, 0 among them, ≥ 4; twice as many by values
-  Index brackets = 8;           ///< valleys that are refined, the deepest first, ≥ 1
-  Index rounds = 12;            ///< of refinement at most, ≥ 1; by values, a rollout each
+  Index scan = 24;     ///< gains of the scan, 0 among them, ≥ 4; thrice as many by values
+  Index brackets = 8;  ///< valleys that are refined, the deepest first, ≥ 1
+  Index rounds = 12;   ///< of refinement at most, ≥ 1; by values, a rollout each
   double gain_tolerance = 1e-6;   ///< relative; a valley that is known as well is done
   double error_tolerance = 1e-6;  ///< relative; done when no valley promises to be so much deeper
   /// The best gain of a scene that differs little [N/m]: with slopes, its valley is searched, and
@@ -74,9 +74,9 @@ struct GlobalSearchOptions {
   std::optional<double> warm_start = {};
 };
 
-/// A scan, then a refinement of the deepest valleys: by cubics through errors and exact
-/// slopes, a round for all valleys in one batch, or, for an objective without slopes, by Brent's
-/// method in one valley after another. Never worse than any gain that it has tried.
+/// A scan, then a refinement of the deepest valleys: where the objective knows its derivatives, on
+/// cubics through the arrivals of all particles, a round for all valleys in one batch; otherwise by
+/// Brent's method in one valley after another. Never worse than any gain that it has tried.
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options = {});
 
 }  // namespace nuno
