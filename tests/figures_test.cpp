@@ -179,7 +179,7 @@ TEST_F(Pictures, AStillAndAMovingSvgOfSeveralResultsAreWellFormed) {
 }
 
 TEST_F(Pictures, AFilmHasAllItsFramesAndLastsAsLongAsTheFlightAndARest) {
-  for (const std::string program : {"ffmpeg", "ffprobe", "rsvg-convert"}) {
+  for (const std::string program : {"ffmpeg", "ffprobe"}) {
     if (!is_installed(program)) GTEST_SKIP() << program << " is not installed";
   }
   const std::string file = result();
