@@ -768,6 +768,9 @@ TEST_F(Program, HelpsOnItsCommandsAndTellsItsVersion) {
     const Outcome run = nuno({command, "--help"});
     EXPECT_EQ(run.status, 0);
     EXPECT_NE(run.out.find("--out"), std::string::npos);
+    for (const std::string choice : {"\"hold\"", "\"morph\"", "\"damping_ratio\"", "\"settle\""}) {
+      EXPECT_NE(run.out.find(choice), std::string::npos) << command << ": " << choice;
+    }
     EXPECT_EQ(run.err, "");
   }
 }
