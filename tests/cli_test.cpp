@@ -722,6 +722,18 @@ TEST_F(ComparisonOfEngines, HasEveryFieldAndACommonCurve) {
   ASSERT_EQ(curve["alpha"].size(), curve["box2d"].size());
   EXPECT_TRUE(std::is_sorted(curve["alpha"].begin(), curve["alpha"].end()));
   EXPECT_EQ(curve["alpha"][0], 0.0);
+  for (const std::size_t engine : {0u, 1u}) {
+    const Json& row = entry["rows"][engine];
+    const Json& efforts = curve["control_effort"][row["backend"].get<std::string>()];
+    ASSERT_EQ(efforts.size(), curve["alpha"].size());
+    EXPECT_EQ(efforts[0], 0.0);
+    // The best gain's effort lies between those of its neighbours on the curve.
+    const auto next = std::upper_bound(curve["alpha"].begin(), curve["alpha"].end(), row["alpha"]);
+    const auto i = static_cast<std::size_t>(next - curve["alpha"].begin());
+    ASSERT_LT(i, efforts.size());
+    EXPECT_LE(efforts[i - 1], row["control_effort"]);
+    EXPECT_GE(efforts[i], row["control_effort"]);
+  }
   EXPECT_NEAR(curve["native"][0].get<double>(), entry["rows"][0]["launch_only_error"].get<double>(),
               1e-12);
 }

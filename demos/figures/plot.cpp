@@ -43,12 +43,15 @@ std::vector<Tick> ticks(const Axis& axis, int count) {
     const int first = static_cast<int>(std::floor(std::log10(axis.low)));
     const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
     const int every = std::max(1, (last - first + count) / (count + 1));
+    // Within two decades their powers alone would be too few.
+    const bool narrow = axis.high / axis.low < 60;
     for (int exponent = first; exponent <= last; ++exponent) {
       for (int digit = 1; digit <= 9; ++digit) {
         const double value = digit * std::pow(10, exponent);
         if (value < axis.low * (1 - 1e-9) || value > axis.high * (1 + 1e-9)) continue;
-        const bool named = digit == 1 && (exponent - first) % every == 0;
-        result.push_back({value, named ? power_of_ten(exponent) : ""});
+        const bool named =
+            digit == 1 ? (exponent - first) % every == 0 : narrow && (digit == 2 || digit == 5);
+        result.push_back({value, !named ? "" : digit == 1 ? power_of_ten(exponent) : shown(value)});
       }
     }
     return result;

@@ -118,6 +118,69 @@ test('another gain moves the cloths and the mark on the curve', async () => {
   await page.close();
 });
 
+/// The row of compare.json's curve with a gain that the page shows to three digits.
+function curvePoint(shownGain, scene = 1) {
+  const { alpha, native, box2d, control_effort: effort } = comparison.scenes[scene - 1].alpha_curve;
+  const i = alpha.findIndex((gain) => Math.abs(gain - shownGain) <= 0.006 * gain);
+  return { gain: alpha[i], errors: [native[i], box2d[i]], efforts: [effort.native[i], effort.box2d[i]] };
+}
+
+const centre = ({ x, y, width, height }) => [x + width / 2, y + height / 2];
+
+for (const viewport of [{ width: 1280, height: 900 }, { width: 390, height: 844 }]) {
+  test(`a click at a point of the trade-off flies it, at ${viewport.width} px`, async () => {
+    const page = await opened({ viewport });
+    await part(page, 'trade-off').scrollIntoViewIfNeeded();
+    const dots = page.locator('#scene-1 .dots-of circle');
+    const places = [];
+    for (const dot of await dots.all()) places.push(centre(await dot.boundingBox()));
+    assert.ok(places.length >= 5, `${places.length} points`);
+    places.sort(([a], [b]) => a - b);
+    for (let i = 1; i < places.length; ++i) {
+      assert.ok(places[i][1] > places[i - 1][1], 'more effort, less error');
+    }
+    const rings = page.locator('#scene-1 .rings-of circle.a:visible');
+    const ringAt = async (place) => {
+      const [x, y] = centre(await rings.last().boundingBox());
+      return Math.hypot(x - place[0], y - place[1]) < 1;
+    };
+    const before = await shown(page, 'error-0');
+    const picked = places[places.length >> 1];
+    await page.mouse.click(...picked);
+    const gain = parseFloat(await shown(page, 'reading-0-0'));
+    const wanted = curvePoint(gain);
+    for (const engine of [0, 1]) {
+      assert.equal(parseFloat(await shown(page, `reading-${engine}-0`)), gain);
+      const close = async (name, value) => {
+        const number = parseFloat(await shown(page, name));
+        assert.ok(Math.abs(number - value) <= 0.006 * value, `${name}: ${number} is not ${value}`);
+      };
+      await close(`reading-${engine}-1`, 100 * wanted.errors[engine]);
+      await close(`reading-${engine}-2`, wanted.efforts[engine]);
+      await close(`error-${engine}`, 100 * wanted.errors[engine]); // it flies, too
+    }
+    assert.notEqual(await shown(page, 'error-0'), before);
+    assert.ok(await ringAt(picked));
+    // The same gain on E(α).
+    const cursor = page.locator('#scene-1 .cursor');
+    const { left, right, low, high } = await cursor.evaluate((mark) => ({ ...mark.dataset }));
+    const x = Number(left) +
+      (Math.log(wanted.gain / low) / Math.log(high / low)) * (Number(right) - Number(left));
+    const marked = parseFloat((await cursor.getAttribute('transform')).slice('translate('.length));
+    assert.ok(Math.abs(marked - x) < 0.01, `${marked} is not ${x}`);
+    // Keys go on from there; a click at nothing changes nothing.
+    await page.keyboard.press('ArrowRight');
+    const next = parseFloat(await shown(page, 'reading-0-0'));
+    assert.ok(next > gain, `${next} is not above ${gain}`);
+    assert.ok(!await ringAt(picked));
+    const [firstX, firstY] = places[0];
+    await page.mouse.click(firstX, firstY + 60);
+    assert.equal(parseFloat(await shown(page, 'reading-0-0')), next);
+    assert.deepEqual(page.complaints, []);
+    await page.close();
+  });
+}
+
 test('it fits a phone, a dark screen and paper', async () => {
   for (const width of [360, 390, 768, 1280, 1920]) {
     for (const colorScheme of ['light', 'dark']) {
