@@ -104,6 +104,30 @@ test('scrubbed to the arrival, it shows the errors of the comparison', async () 
   await page.close();
 });
 
+test('the cloths are drawn to scale: what they miss on the page is what it says', async () => {
+  const page = await opened();
+  for (let scene = 1; scene <= 4; ++scene) {
+    for (const label of ['each at its own best', 'launch only']) {
+      await page.locator(`#scene-${scene} .gains label`, { hasText: label }).click();
+      const [target, ...cloths] = await page.evaluate((id) =>
+        ['.band', '.thick.a', '.thick.b'].map((name) =>
+          document.querySelector(`#${id} [data-part="stage"] polyline${name}`)
+            .getAttribute('points').trim().split(' ').map((place) => place.split(',').map(Number))),
+      `scene-${scene}`);
+      const apart = ([x, y], [u, v]) => Math.hypot(x - u, y - v);
+      const length = target.slice(1).reduce((sum, place, i) => sum + apart(place, target[i]), 0);
+      for (const engine of [0, 1]) {
+        const sum = target.reduce((all, place, i) => all + apart(place, cloths[engine][i]), 0);
+        const measured = (100 * sum) / target.length / length;
+        const said = parseFloat(await shown(page, `error-${engine}`, scene));
+        // Places are written to a tenth of a pixel, of a cloth of more than a hundred.
+        assert.ok(Math.abs(measured - said) < 0.08, `${measured} is not ${said}`);
+      }
+    }
+  }
+  await page.close();
+});
+
 test('another gain moves the cloths and the mark on the curve', async () => {
   const page = await opened();
   const cursor = page.locator('#scene-1 .cursor');
@@ -145,6 +169,17 @@ for (const viewport of [{ width: 1280, height: 900 }, { width: 390, height: 844 
       return Math.hypot(x - place[0], y - place[1]) < 1;
     };
     const before = await shown(page, 'error-0');
+    // The axes are logarithmic: three points say by their readings where they must be.
+    const logs = [];
+    for (const place of [places[0], places[places.length >> 1], places.at(-1)]) {
+      await page.mouse.click(...place);
+      logs.push([Math.log(parseFloat(await shown(page, 'reading-0-2'))),
+        -Math.log(parseFloat(await shown(page, 'reading-0-1'))), ...place]);
+    }
+    const share = (k) => (logs[1][k] - logs[0][k]) / (logs[2][k] - logs[0][k]);
+    for (const k of [0, 1]) {
+      assert.ok(Math.abs(share(k) - share(k + 2)) < 0.02, `${share(k)} is not ${share(k + 2)}`);
+    }
     const picked = places[places.length >> 1];
     await page.mouse.click(...picked);
     const gain = parseFloat(await shown(page, 'reading-0-0'));
