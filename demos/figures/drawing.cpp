@@ -51,15 +51,6 @@ constexpr double font_size = 12;
 constexpr double spacing_of_obstacles = 4;
 constexpr double half_a_band = 4;  // the style sheet's, near enough
 
-/// A guess that holds for DejaVu Sans, one of the widest fonts.
-double width_of(std::string_view text, std::string_view style) {
-  const auto characters = static_cast<double>(std::ranges::count_if(
-      text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
-  const auto is = [&](std::string_view part) { return style.find(part) != style.npos; };
-  const double size = is("title") ? 15 : font_size;
-  return (is("title") || is("strong") ? 0.6 : 0.55) * size * characters;
-}
-
 bool overlap(const Box& a, const Box& b) {
   return a.left < b.right() && b.left < a.right() && a.top < b.bottom() && b.top < a.bottom();
 }
@@ -121,6 +112,16 @@ std::string style_sheet() {
       ".figure .still{display:inline}}";
   css += "@media print{.figure .moving{display:none}.figure .still{display:inline}}";
   return css;
+}
+
+// A guess that holds for DejaVu Sans, one of the widest fonts; its digits are wider than letters.
+double text_width(std::string_view text, std::string_view style) {
+  const auto characters = static_cast<double>(std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+  const auto is = [&](std::string_view part) { return style.find(part) != style.npos; };
+  const double size = is("title") ? 15 : font_size;
+  const bool number = text.find_first_not_of("0123456789.") == text.npos;
+  return (number || is("title") || is("strong") ? 0.6 : 0.55) * size * characters;
 }
 
 std::string xml_text(std::string_view text) {
@@ -246,7 +247,7 @@ void Drawing::text(Vec at, std::string_view text, Anchor anchor, std::string_vie
   body_ +=
       fmt::format("<text class=\"{}\" x=\"{:.6g}\" y=\"{:.6g}\" text-anchor=\"{}\">{}</text>\n",
                   style, at.x, at.y, anchor_name(anchor), xml_text(text));
-  texts_.push_back(box_of_text(at, width_of(text, style), anchor));
+  texts_.push_back(box_of_text(at, text_width(text, style), anchor));
 }
 
 void Drawing::vertical_text(Vec at, std::string_view text, std::string_view style) {
@@ -281,7 +282,7 @@ std::string Drawing::placed_labels() const {
   std::string result;
   std::vector<Box> taken = texts_;
   for (const Label& label : labels_) {
-    const double width = width_of(label.text, label.style);
+    const double width = text_width(label.text, label.style);
     double best = std::numeric_limits<double>::infinity();
     Vec at = label.place;
     Anchor best_anchor = Anchor::middle;

@@ -8,7 +8,7 @@ namespace nuno::figures {
 namespace {
 
 constexpr double strip = 40;        // from the numbers of y to the frame [px]
-constexpr double for_numbers = 58;  // of y, with its title
+constexpr double for_numbers = 64;  // of y, with its title
 constexpr double for_text = 48;     // below the frame
 
 }  // namespace

@@ -57,6 +57,7 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
 
   Drawing drawing({options.width, options.height}, options.title + ". " + options.subtitle);
   std::vector<std::string> backends;
+  backends.reserve(curves.size());
   for (const GainCurve& curve : curves) backends.push_back(curve.backend);
   auto [x, y] = draw_heading(drawing, options.title, options.subtitle, backends);
   drawing.marker(Marker::circle, {x + 4, y - 4}, 6, "a open", Weight::none);

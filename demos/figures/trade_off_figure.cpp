@@ -31,7 +31,7 @@ bool are_neighbours(const std::vector<TradeOffPoint>& flights, double gain, doub
 }  // namespace
 
 std::vector<TradeOffPoint> spread_along(const TradeOffCurve& curve, std::size_t count) {
-  const std::vector<TradeOffPoint> trades = shown_trades(curve);
+  std::vector<TradeOffPoint> trades = shown_trades(curve);
   if (trades.size() <= count) return trades;
   const double wide = std::log(trades.back().effort / trades.front().effort);
   const double high = std::log(trades.front().error / trades.back().error);

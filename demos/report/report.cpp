@@ -205,7 +205,8 @@ value="0.25">× 0.25</option><option value="0.5">× 0.5</option><option value="1
 <h3 class="below">Error at arrival, by control effort</h3>
 <div data-part="trade-off">
 {trade_off}</div>
-<p class="note">Lines: the gains that no other beats in both. Click a point to fly it.</p>
+<p class="note">Lines: the gains that no other beats in both. <span class="screen">Click a point to fly
+it.</span></p>
 <table class="trade" aria-live="polite">
 <thead><tr><th class="engine">flight shown</th><th>α<small>N/m</small></th><th>error<small>% of
 L</small></th><th>effort<small>{unit}</small></th></tr></thead>
