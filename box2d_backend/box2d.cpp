@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 
 namespace nuno::box2d {
 namespace {
@@ -25,6 +26,14 @@ using Eigen::Vector2d;
 constexpr double largest_translation = 1.9;  // rods per step
 constexpr double largest_rotation = 1.5;     // rad per step
 constexpr double largest_force = 1e3;        // breaks those limits at once, and is no trouble yet
+
+// Why a flight ends before its time.
+constexpr std::string_view wild_launch =
+    "a rod is launched faster than Box2D moves it: two lengths or a quarter turn per step";
+constexpr std::string_view wild_force = "a force is larger than Box2D can take in one step";
+constexpr std::string_view wild_motion =
+    "a rod gets faster than Box2D moves it: two lengths or a quarter turn per step";
+constexpr std::string_view wild_turn = "a hinge turns further than its pair of springs reaches";
 
 constexpr Index most_particles = 4096;
 constexpr double most_steps = 50e6;
@@ -200,21 +209,23 @@ class ChainSimulation final : public Simulation {
     if (within_limits(velocity_)) {
       build_world();
     } else {
-      give_up();
+      give_up(wild_launch);
     }
   }
 
   void step(const Points& forces) override {
-    if (!alive_) return;
-    if (!apply(forces)) return give_up();
+    if (!failure_.empty()) return;
+    if (!apply(forces)) return give_up(wild_force);
     hand_over();
     world_.Step(1, plan_.velocity_iterations, plan_.position_iterations);
-    if (!take_over() || !turn_within_range()) return give_up();
+    if (!take_over()) return give_up(wild_motion);
+    if (!turn_within_range()) return give_up(wild_turn);
     read();
   }
 
   const Points& positions() const override { return positions_; }
   const Points& velocities() const override { return velocities_; }
+  std::string_view failure() const override { return failure_; }
 
  private:
   static std::size_t index(Index i) { return static_cast<std::size_t>(i); }
@@ -416,8 +427,8 @@ class ChainSimulation final : public Simulation {
   }
 
   /// Box2D sees nothing of this cloth from now on: a bad number would end the process there.
-  void give_up() {
-    alive_ = false;
+  void give_up(std::string_view reason) {
+    failure_ = reason;
     positions_.setConstant(std::numeric_limits<double>::quiet_NaN());
     velocities_.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
@@ -433,7 +444,7 @@ class ChainSimulation final : public Simulation {
   Matrix2Xd mean_impulse_;  // λ̄ of every hinge
   Matrix2Xd left_, right_;  // the rods' ends from their centres
   Points positions_, velocities_;
-  bool alive_ = true;
+  std::string_view failure_;  // empty: Box2D flies this cloth
   bool first_ = true;
 };
 

@@ -99,8 +99,9 @@ double fly(const Backend& backend, Simulation& cloth, Recorder& recorder, Rollou
     if (!(strain < torn_strain)) {
       result.status = RolloutStatus::diverged;
       result.diverged_at_step = n + 1;
-      result.reason = std::isfinite(strain) ? "a segment is a thousand times its length"
-                                            : "a particle's position is no longer finite";
+      result.reason = !cloth->failure().empty() ? cloth->failure()
+                      : std::isfinite(strain)   ? "a segment is a thousand times its length"
+                                                : "a particle's position is no longer finite";
       break;
     }
     result.max_strain = std::max(result.max_strain, strain);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace nuno {
 namespace {
@@ -31,6 +32,17 @@ TradeOffPoint bisect(const Backend& backend, TradeOffPoint inside, TradeOffPoint
 
 }  // namespace
 
+std::vector<TradeOffPoint> best_trades(std::vector<TradeOffPoint> points) {
+  std::erase_if(points, [](const TradeOffPoint& point) { return !std::isfinite(point.error); });
+  std::ranges::sort(
+      points, {}, [](const TradeOffPoint& point) { return std::pair(point.effort, point.error); });
+  std::vector<TradeOffPoint> curve;
+  for (const TradeOffPoint& point : points) {
+    if (curve.empty() || point.error < curve.back().error) curve.push_back(point);
+  }
+  return curve;
+}
+
 std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count) {
   const Objective range = objective(backend);
   const double first = 1e-2 * range.gain_scale;
@@ -41,13 +53,7 @@ std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count) {
     const double gain = i == 0 ? 0 : first * std::pow(last / first, along);
     all[static_cast<std::size_t>(i)] = point_at(backend, gain);
   });
-  std::erase_if(all, [](const TradeOffPoint& point) { return !std::isfinite(point.error); });
-  std::ranges::sort(all, {}, &TradeOffPoint::effort);
-  std::vector<TradeOffPoint> curve;
-  for (const TradeOffPoint& point : all) {
-    if (curve.empty() || point.error < curve.back().error) curve.push_back(point);
-  }
-  return curve;
+  return best_trades(std::move(all));
 }
 
 std::optional<TradeOffPoint> least_effort(const Backend& backend,

@@ -75,19 +75,22 @@ Comparison compare_engines(const std::string& scene, const Backend& first, const
   result.shape_difference.max /= result.cloth_length;
 
   result.curve_gains = gains_of_curve(first, second);
-  for (std::size_t i = 0; i < 2; ++i) {
-    result.curve_errors[i] = engines[i]->errors(result.curve_gains);
-  }
   const std::size_t points = result.curve_gains.size();
-  result.curve_sensitivity.assign(points, std::numeric_limits<double>::infinity());
-  result.curve_strain = result.curve_sensitivity;
-  parallel_for(static_cast<Index>(points), [&](Index k) {
-    const auto i = static_cast<std::size_t>(k);
-    const Rollout flight = rollout(first, result.curve_gains[i]);
-    if (diverged(flight)) return;
-    result.curve_sensitivity[i] = bounded_sensitivity(first, flight);
-    result.curve_strain[i] = flight.max_strain;
-  });
+  const std::vector<double> unknown(points, std::numeric_limits<double>::infinity());
+  result.curve_sensitivity = result.curve_strain = unknown;
+  for (std::size_t engine = 0; engine < 2; ++engine) {
+    result.curve_errors[engine] = result.curve_efforts[engine] = unknown;
+    parallel_for(static_cast<Index>(points), [&](Index k) {
+      const auto i = static_cast<std::size_t>(k);
+      const Rollout flight = rollout(*engines[engine], result.curve_gains[i]);
+      if (diverged(flight)) return;
+      result.curve_errors[engine][i] = flight.error.mean;
+      result.curve_efforts[engine][i] = flight.control_effort;
+      if (engine > 0) return;
+      result.curve_sensitivity[i] = bounded_sensitivity(first, flight);
+      result.curve_strain[i] = flight.max_strain;
+    });
+  }
   return result;
 }
 

@@ -39,8 +39,9 @@ struct Comparison {
   std::array<ComparisonRow, 2> rows;
   /// The end shapes at the first engine's best α, centroids aligned, over L.
   ShapeDifference shape_difference;
-  std::vector<double> curve_gains;                  ///< 0, then log-spaced [N/m]
-  std::array<std::vector<double>, 2> curve_errors;  ///< E there [m]; +∞ where a rollout diverged
+  std::vector<double> curve_gains;                   ///< 0, then log-spaced [N/m]
+  std::array<std::vector<double>, 2> curve_errors;   ///< E there [m]; +∞ where a rollout diverged
+  std::array<std::vector<double>, 2> curve_efforts;  ///< control effort there; +∞ as well
   /// Of the first engine's flights there; infinite where one diverged.
   std::vector<double> curve_sensitivity, curve_strain;
   std::optional<Divergence> divergence;  ///< if set, the numbers above mean nothing

@@ -111,10 +111,12 @@ Json to_json(const ComparisonRow& row) {
 }
 
 Json to_json(const Comparison& comparison) {
-  Json curve = {{"alpha", comparison.curve_gains}};
+  Json curve = {{"alpha", comparison.curve_gains}}, efforts;
   for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
     curve[comparison.rows[i].backend] = comparison.curve_errors[i];  // infinity becomes null
+    efforts[comparison.rows[i].backend] = comparison.curve_efforts[i];
   }
+  curve["control_effort"] = efforts;
   curve["sensitivity"] = comparison.curve_sensitivity;
   curve["max_strain"] = comparison.curve_strain;
   return {{"scene", comparison.scene},

@@ -91,6 +91,19 @@ void add_out(CLI::App& command, std::string& out, const char* type, const char* 
 constexpr const char* commands = "Commands";  // their heading in the help
 constexpr const char* out_file = "Result file (JSON); - is standard output";
 
+// Below the options of every command that throws scenes.
+constexpr const char* which_reference = R"(What the control pulls towards is the scene's choice:
+  "reference": "hold"    The target's shape from the first step on, as in the paper;
+                         the default. To see the paper's method: it is near at few
+                         gains only, and often fragile there.
+  "reference": "morph"   A motion from the initial shape to the target. For all else:
+                         nearer, calmer, at a fraction of the force.
+  "damping_ratio": 0.7   With "morph": what swings about that motion dies away, and
+                         more gain is less error. 0, the default, is the paper's.
+  "arrival": "pass"      With "morph": in full swing, to fly on; the default.
+  "arrival": "settle"    With "morph": the shape comes to rest, to be held or to be
+                         looked at; takes a little more force.)";
+
 ExitStatus fail(ExitStatus status, const std::string& message) {
   complain(message);
   return status;
@@ -152,6 +165,7 @@ ExitStatus run(int argc, char** argv) {
       ->default_str(fmt::format("{}", simulation.gain));
   add_time_step(simulate_command, simulation.time_step);
   add_out(simulate_command, simulation.out, "FILE", out_file);
+  simulate_command.footer(which_reference);
   simulate_command.group(commands);
   simulate_command.callback([&] { chosen = [&] { return simulate(simulation); }; });
 
@@ -190,13 +204,13 @@ ExitStatus run(int argc, char** argv) {
             "The gain of least error whose control effort is at most X");
   optimize_command.add_flag("--refine", optimization.refine,
                             "Then aim off the target until the cloth arrives on it, as near\n"
-                            "as a cloth can; best with \"reference\": \"morph\" and\n"
-                            "\"damping_ratio\": 0.7 in the scene");
+                            "as a cloth can; best with a damped \"morph\", see below");
   optimize_command.add_flag("--robust", optimization.robust,
                             "Prefer a gain whose answer is not fragile: the error is the mean\n"
                             "over five starts, four of them disturbed by 0.1 % of the length");
   add_time_step(optimize_command, optimization.time_step);
   add_out(optimize_command, optimization.out, "FILE", out_file);
+  optimize_command.footer(which_reference);
   optimize_command.group(commands);
   optimize_command.callback([&] {
     if (optimization.error_limit && optimization.effort_limit) {
@@ -222,6 +236,7 @@ ExitStatus run(int argc, char** argv) {
       ->required();
   add_out(compare_command, comparison.out, "DIR",
           "Folder for compare.json; - is compare.json on standard output");
+  compare_command.footer(which_reference);
   compare_command.group(commands);
   compare_command.callback([&] { chosen = [&] { return compare(comparison); }; });
 

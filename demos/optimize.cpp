@@ -8,10 +8,9 @@
 #include <chrono>
 
 #include "commands.h"
-#include "engines.h"
-#include "json_files.h"
 #include "output.h"
 #include "rollouts.h"
+#include "single_flight.h"
 #include "summary.h"
 
 namespace nuno {
@@ -77,11 +76,8 @@ RefineSummary aim_off(const OptimizeOptions& options, const SceneFile& file, dou
 }  // namespace
 
 ExitStatus optimize(const OptimizeOptions& options) {
-  SceneFile file = read_scene_file(options.scene, options.time_step);
+  SceneFile file = read_scene_for(options.out, options.scene, options.time_step);
   auto backend = make_backend(options.backend, file);
-  const double frames = options.out.empty() ? 0 : file.scene.frames_per_second;
-  if (frames > 0) require_few_frames(file);
-  require_writable(options.out);
   std::FILE* const summary = people(options.out);
   if (const std::string words = verdict(assess(*backend)); !words.empty()) {
     fmt::print(summary, "{}\n", words);
@@ -98,18 +94,8 @@ ExitStatus optimize(const OptimizeOptions& options) {
     backend = make_backend(options.backend, file);
   }
   // If every rollout diverged, the one at the gain it ended on says why.
-  const Rollout flight = rollout(*backend, gain, {.frames_per_second = frames});
-  if (diverged(flight)) {
-    report_divergence(options.scene, *backend, flight);
-    return ExitStatus::diverged;
-  }
-  const double growth = bounded_sensitivity(*backend, flight);
-  if (!options.out.empty()) {
-    write_output(options.out, [&](std::FILE* out) {
-      write_result(out, file.scene.name, *backend, flight, growth, found);
-    });
-  }
-  print_summary(summary, file.scene.name, *backend, flight, growth);
+  const ExitStatus status = fly(file, *backend, gain, options.out, found);
+  if (status != ExitStatus::done) return status;
   const double percent = 100 / file.problem.chain.length;
   if (found.robust_error) {
     fmt::print(summary, "  {:<17} {:.4g} % of the cloth's length, mean of {} disturbed starts\n",

@@ -15,6 +15,10 @@ std::string duration(double seconds) {
   return fmt::format("{} min {} s", whole / 60, whole % 60);
 }
 
+std::string effort_unit_name(const Chain& chain) {
+  return chain.gravity > 0 ? "of a particle's weight" : "of m·L/t0²";
+}
+
 void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,
                    const Rollout& rollout, double sensitivity) {
   const Chain& chain = backend.problem().chain;
@@ -26,7 +30,7 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
              percent * rollout.error.mean, percent * rollout.error.max);
   fmt::print(file, "  {:<17} {:.3g} m from the target's\n", "centroid", rollout.error.centroid);
   fmt::print(file, "  {:<17} {:.4g} {}\n", "control effort", rollout.control_effort,
-             chain.gravity > 0 ? "of a particle's weight" : "of m·L/t0²");
+             effort_unit_name(chain));
   fmt::print(file, "  {:<17} {:.3g} % at most on the way\n", "strain", 100 * rollout.max_strain);
   fmt::print(file, "  {:<17} {:.3g}-fold growth of a small change at the start\n", "sensitivity",
              sensitivity);

@@ -392,6 +392,9 @@ TEST(Box2dHinge, AFlightThatLeavesTheSpringPairsRangeHasDiverged) {
       chain->step(Points::Zero(2, 3));
     }
     EXPECT_EQ(chain->positions().allFinite(), form == Hinge::soft_weld);
+    EXPECT_EQ(chain->failure(), form == Hinge::soft_weld
+                                    ? ""
+                                    : "a hinge turns further than its pair of springs reaches");
   }
 }
 
@@ -410,6 +413,7 @@ TEST(Box2dLimits, ABadForceEndsTheFlightForGood) {
       forces(place) = bad;
       chain->step(forces);
       EXPECT_TRUE(chain->positions().array().isNaN().all()) << bad;
+      EXPECT_EQ(chain->failure(), "a force is larger than Box2D can take in one step");
       chain->step(Points::Zero(2, 3));  // nothing wakes it
       EXPECT_TRUE(chain->positions().array().isNaN().all()) << bad;
     }
@@ -424,6 +428,7 @@ TEST(Box2dLimits, ABadLaunchNeverReachesBox2d) {
     const auto chain = backend->start(backend->problem().chain.initial, launch);
     chain->step(Points::Zero(2, 3));
     EXPECT_TRUE(chain->positions().array().isNaN().all()) << bad;
+    EXPECT_TRUE(chain->failure().starts_with("a rod is launched faster than Box2D moves it"));
   }
 }
 
@@ -444,8 +449,10 @@ TEST(Box2dLimits, AMotionThatBox2dWouldClampHasDiverged) {
   // Pushed over the limit later: the step that passes it is the last.
   Points forces = Points::Zero(2, 3);
   forces.row(0).setConstant(0.1 / 3 * speed(0.1) / backend->time_step());
+  EXPECT_EQ(allowed->failure(), "");
   allowed->step(forces);
   EXPECT_TRUE(allowed->positions().array().isNaN().all());
+  EXPECT_TRUE(allowed->failure().starts_with("a rod gets faster than Box2D moves it"));
 }
 
 TEST(Box2dLimits, ExtremeScenesAreRefusedOrFlyOrDivergeButNeverAbort) {

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -118,6 +121,27 @@ std::vector<double> numbers(const std::string& text) {
   return result;
 }
 
+using Places = std::vector<std::array<double, 2>>;
+
+/// Every polyline of a drawing with exactly this class, in order [px].
+std::vector<Places> polylines(const std::string& svg, const std::string& style) {
+  std::vector<Places> result;
+  const std::string start = "<polyline class=\"line " + style + "\" points=\"";
+  for (std::size_t at = svg.find(start); at != std::string::npos; at = svg.find(start, at + 1)) {
+    const std::size_t first = at + start.size();
+    const std::vector<double> flat = numbers(svg.substr(first, svg.find('"', first) - first));
+    result.emplace_back();
+    for (std::size_t i = 0; i + 1 < flat.size(); i += 2) {
+      result.back().push_back({flat[i], flat[i + 1]});
+    }
+  }
+  return result;
+}
+
+double distance(const std::array<double, 2>& a, const std::array<double, 2>& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1]);
+}
+
 TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
   const Outcome made = nuno("figures --out " + in_folder("figures").string());
   if (is_installed("rsvg-convert")) {
@@ -151,6 +175,31 @@ TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
   std::snprintf(best, sizeof best, "best, both engines: α = %.3g N/m",
                 Json::parse(read_text(found))["alpha"].get<double>());
   EXPECT_NE(figure(5).find(best), std::string::npos) << best;
+  // It is where the curve is lowest, and ringed.
+  const std::vector<Places> curves = polylines(figure(5), "a thick");
+  ASSERT_EQ(curves.size(), 2u) << "its key and the curve";
+  const auto lowest =
+      std::ranges::max(curves[1], {}, [](const auto& place) { return place[1]; });  // y is down
+  const std::string ring = "<circle class=\"line a\"";
+  ASSERT_NE(figure(5).find(ring), std::string::npos);
+  const std::vector<double> ringed = numbers(figure(5).substr(figure(5).find(ring)));
+  EXPECT_LT(distance(lowest, {ringed[0], ringed[1]}), 4) << "a few of the scan's steps";
+
+  // Flights are drawn to scale: an error measured on the paper is the one in the text.
+  for (const auto& [n, percent] : std::vector<std::pair<int, double>>{{6, 8.85}, {7, 2.17}}) {
+    const std::vector<Places> targets = polylines(figure(n), "band");
+    const std::vector<Places> finals = polylines(figure(n), "a  thick");
+    ASSERT_EQ(targets.size(), 2u) << "the flight and the arrival, enlarged";
+    ASSERT_EQ(finals.size(), 2u);
+    for (const std::size_t plot : {0u, 1u}) {
+      double sum = 0, length = 0;
+      for (std::size_t i = 0; i < 32; ++i) {
+        sum += distance(targets[plot].at(i), finals[plot].at(i));
+        if (i > 0) length += distance(targets[plot][i - 1], targets[plot][i]);
+      }
+      EXPECT_NEAR(100 * sum / 32 / length, percent, 0.02) << "hundredths of a pixel";
+    }
+  }
   for (const int n : {6, 7, 8}) {
     for (const std::string text : {"x [m]", "y [m]", "initial", "target", "final", "centroid"}) {
       EXPECT_NE(figure(n).find(text), std::string::npos) << n << ": " << text;
@@ -179,7 +228,7 @@ TEST_F(Pictures, AStillAndAMovingSvgOfSeveralResultsAreWellFormed) {
 }
 
 TEST_F(Pictures, AFilmHasAllItsFramesAndLastsAsLongAsTheFlightAndARest) {
-  for (const std::string program : {"ffmpeg", "ffprobe", "rsvg-convert"}) {
+  for (const std::string program : {"ffmpeg", "ffprobe"}) {
     if (!is_installed(program)) GTEST_SKIP() << program << " is not installed";
   }
   const std::string file = result();
@@ -201,6 +250,16 @@ TEST_F(Pictures, AFilmHasAllItsFramesAndLastsAsLongAsTheFlightAndARest) {
     EXPECT_NEAR(std::stod(found["format"]["duration"].get<std::string>()), shown, 1.0 / rate)
         << extension;
     EXPECT_EQ(stream["width"], extension == "gif" ? 800 : 1600);
+    if (extension != "gif") continue;  // the others lose digits: no two pictures are the same
+    const Outcome pictures = run("ffmpeg -v error -i " + film + " -f framemd5 -");
+    ASSERT_EQ(pictures.status, 0) << pictures.err;
+    std::set<std::string> different;
+    std::istringstream lines(pictures.out);
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("#")) different.insert(line.substr(line.rfind(',')));
+    }
+    // Every moment of the flight is another picture; at rest all are one.
+    EXPECT_EQ(different.size(), std::ceil(0.5 * rate) + 1);
   }
 }
 

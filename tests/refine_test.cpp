@@ -100,6 +100,22 @@ TEST(TradeOff, FallsInErrorAsItRisesInEffort) {
   }
 }
 
+TEST(TradeOff, LeavesOutWhatIsBeatenInBothAndWhatDiverged) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<TradeOffPoint> curve = best_trades({{.gain = 0, .error = 5, .effort = 0},
+                                                        {.gain = 1, .error = 3, .effort = 2},
+                                                        {.gain = 2, .error = 4, .effort = 3},
+                                                        {.gain = 3, .error = 3, .effort = 4},
+                                                        {.gain = 4, .error = 2, .effort = 6},
+                                                        {.gain = 5, .error = 1, .effort = 6},
+                                                        {.gain = 6, .error = 4.5, .effort = 1},
+                                                        {.gain = 7, .error = infinity, .effort = 0},
+                                                        {.gain = 8, .error = 6, .effort = 0}});
+  std::vector<double> gains;
+  for (const TradeOffPoint& point : curve) gains.push_back(point.gain);
+  EXPECT_EQ(gains, (std::vector<double>{0, 6, 1, 5}));
+}
+
 TEST(TradeOff, FindsTheLeastEffortWithinAnErrorLimit) {
   const auto backend = on_native(morph_problem(0));
   const std::vector<TradeOffPoint> curve = trade_off(*backend, 24);

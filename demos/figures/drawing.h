@@ -34,6 +34,9 @@ std::string style_sheet();
 /// A text as XML holds it: escaped, without codes that XML has no place for, valid UTF-8.
 std::string xml_text(std::string_view text);
 
+/// How wide a text is at most, in a common font [px].
+double text_width(std::string_view text, std::string_view style = "");
+
 /// "x,y x,y …" to a hundredth of a pixel.
 std::string svg_points(std::span<const Vec> points);
 

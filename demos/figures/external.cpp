@@ -117,9 +117,9 @@ void run_program(const std::vector<std::string>& arguments,
 
 void require_png() { require_program("rsvg-convert", "librsvg2-bin", "PNG"); }
 
-void write_png(const std::string& svg, std::FILE* out, double zoom) {
+void write_png(const std::string& svg, std::FILE* out) {
   run_program(
-      {"rsvg-convert", "--unlimited", "--zoom", fmt::format("{}", png_scale * zoom)},
+      {"rsvg-convert", "--unlimited", "--zoom", fmt::format("{}", png_scale)},
       [&](std::FILE* input) { std::fwrite(svg.data(), 1, svg.size(), input); }, out);
 }
 

@@ -29,7 +29,7 @@ inline constexpr double png_scale = 2;
 /// Throws ExternalError where SVG cannot be made into PNG.
 void require_png();
 
-/// An SVG file as PNG, at png_scale; `zoom` times as large besides.
-void write_png(const std::string& svg, std::FILE* out, double zoom = 1);
+/// An SVG file as PNG, at png_scale.
+void write_png(const std::string& svg, std::FILE* out);
 
 }  // namespace nuno

@@ -259,9 +259,7 @@ Drawing draw_flights(const std::vector<Flight>& flights, const FlightFigure& opt
     drawing.line(mapped(plot, flights[i].positions.front()), "soft thick");
   }
   if (!options.plain) {
-    for (const Flight& flight : flights) {
-      drawing.line(centroid_path(plot, flight), "soft dots", Weight::light);
-    }
+    for (const Flight& flight : flights) drawing.line(centroid_path(plot, flight), "soft dots");
   }
   draw_ghosts(drawing, plot, flights, options);
   for (std::size_t i = 0; i < flights.size(); ++i) {

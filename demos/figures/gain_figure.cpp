@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine_chart.h"
 #include "flight_figure.h"
 
 namespace nuno::figures {
@@ -55,20 +56,10 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
   const double top = 1.06 * percent * std::min(largest, 1.7 * launch_only);
 
   Drawing drawing({options.width, options.height}, options.title + ". " + options.subtitle);
-  double y = 8;
-  if (!options.title.empty()) {
-    drawing.text({16, 26}, options.title, Anchor::start, "title");
-    drawing.text({16, 45}, options.subtitle, Anchor::start, "muted");
-    y = 50;
-  }
-  y += 16;
-  double x = 16;
-  for (std::size_t i = 0; i < curves.size(); ++i) {
-    const std::string name = engine_name(curves[i].backend);
-    drawing.line({x, y - 4}, {x + 26, y - 4}, i == 0 ? "a thick" : "b dashes");
-    drawing.text({x + 33, y}, name, Anchor::start);
-    x += 56 + 7.4 * static_cast<double>(name.size());
-  }
+  std::vector<std::string> backends;
+  backends.reserve(curves.size());
+  for (const GainCurve& curve : curves) backends.push_back(curve.backend);
+  auto [x, y] = draw_heading(drawing, options.title, options.subtitle, backends);
   drawing.marker(Marker::circle, {x + 4, y - 4}, 6, "a open", Weight::none);
   drawing.marker(Marker::square, {x + 14, y - 4}, 6, "b open", Weight::none);
   drawing.text({x + 23, y}, "local minimum", Anchor::start);
@@ -81,31 +72,20 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
     drawing.text({x + 33, y}, small ? "descent" : "steepest descent, step by step", Anchor::start);
   }
 
-  // No logarithm has a place for 0: launch only stands in a strip of its own.
-  constexpr double strip = 40;
-  const Box frame = {58 + strip, y + 14, options.width - 58 - strip - 18,
-                     options.height - y - 14 - 48};
-  const Plot plot(frame, {"gain α [N/m]", low, high, Scale::logarithmic},
-                  {"error at arrival [% of L]", 0, top, Scale::linear});
-  const double zero = frame.left - strip + 8;
-  plot.draw_axes(drawing, strip + 7);
+  const PlotWithZero plot({0, y + 14, options.width - 18, options.height - y - 14},
+                          {"gain α [N/m]", low, high, Scale::logarithmic},
+                          {"error at arrival [% of L]", 0, top, Scale::linear});
+  plot.draw_axes(drawing);
+  const Box& frame = plot.frame();
   const auto at = [&](double gain, double error) {
-    Vec place = plot.at(std::max(gain, low), std::min(percent * error, 2 * top));
-    if (gain < low) place.x = gain <= 0 ? zero : frame.left;
-    return place;
+    return plot.at(gain, std::min(percent * error, 2 * top));
   };
-  for (const Tick& tick : ticks(plot.y(), static_cast<int>(frame.height / 40))) {
-    const double height = plot.at(low, tick.value).y;
-    drawing.line({zero - 8, height}, {zero + 8, height}, "grid");
-  }
-  drawing.line({zero - 8, frame.bottom()}, {zero + 8, frame.bottom()}, "rule");
-  drawing.text({zero, frame.bottom() + 18}, "0", Anchor::middle, "muted");
 
   for (std::size_t i = 0; i < curves.size(); ++i) {
     std::vector<Vec> part;
     drawing.begin_clip(frame);
     const auto end_part = [&] {
-      drawing.line(part, i == 0 ? "a thick" : "b dashes", i == 0 ? Weight::heavy : Weight::light);
+      drawing.line(part, engine_line(i), i == 0 ? Weight::heavy : Weight::light);
       part.clear();
     };
     for (const Evaluation& point : curves[i].curve) {
@@ -131,30 +111,28 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
       drawing.marker(series_marker(i), at(minimum.gain, minimum.error), small ? 5 : 7,
                      i == 0 ? "a open" : "b open");
     }
-    drawing.marker(series_marker(i), at(0, curves[i].launch_only_error), small ? 6 : 8, series(i));
+    drawing.marker(series_marker(i), at(0, curves[i].launch_only_error), marker_size(i, small),
+                   series(i));
   }
   // The best of an engine, ringed; both are named, unless they are one.
+  const bool same = std::ranges::all_of(curves, [&](const GainCurve& curve) {
+    const Evaluation& best = curves[0].best;
+    return std::abs(curve.best.gain - best.gain) <= 0.02 * best.gain &&
+           std::abs(curve.best.error - best.error) <= 0.002 * cloth_length;
+  });
   const Box labels = {frame.left + 2, frame.top + 2, frame.width - 4, frame.height - 4};
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const Evaluation& best = curves[i].best;
     const Vec place = at(best.gain, best.error);
-    drawing.marker(series_marker(i), place, small ? 7 : 9, series(i));
+    drawing.marker(series_marker(i), place, marker_size(i, small), series(i));
     drawing.marker(Marker::ring, place, (small ? 14.0 : 17.0) + 4 * static_cast<double>(i),
                    i == 0 ? "a" : "b");
-    const bool one = i > 0 && std::abs(best.gain / curves[0].best.gain - 1) < 0.02 &&
-                     std::abs(best.error - curves[0].best.error) < 0.002 * cloth_length;
-    const bool next_too = i == 0 && curves.size() > 1 &&
-                          std::abs(best.gain / curves[1].best.gain - 1) < 0.02 &&
-                          std::abs(best.error - curves[1].best.error) < 0.002 * cloth_length;
-    if (one) continue;
-    drawing.label({place.x, place.y},
-                  small ? fmt::format("{}best: {:.2g} %",
-                                      next_too ? "" : engine_name(curves[i].backend) + "’s ",
-                                      percent * best.error)
-                        : fmt::format("{}: α = {} N/m, error {:.2f} %",
-                                      next_too ? "best, both engines"
-                                               : "best, " + engine_name(curves[i].backend),
-                                      shown(best.gain), percent * best.error),
+    const std::string name = name_of_best(i, backends, same, small);
+    if (name.empty()) continue;
+    drawing.label(place,
+                  small ? fmt::format("{}: {:.2g} %", name, percent * best.error)
+                        : fmt::format("{}: α = {} N/m, error {:.2f} %", name, shown(best.gain),
+                                      percent * best.error),
                   "strong", labels);
   }
   if (with_descent && !curves[0].descent.empty()) {
@@ -175,7 +153,8 @@ Drawing draw_gain_curves(const std::vector<GainCurve>& curves, double cloth_leng
         "data-low=\"{}\" data-high=\"{}\"><line class=\"line thin\" x1=\"0\" x2=\"0\" "
         "y1=\"{:.6g}\" "
         "y2=\"{:.6g}\"/><path class=\"dot\" d=\"M0 {:.6g}l5 -8h-10z\"/></g>\n",
-        frame.left, frame.right(), zero, low, high, frame.top, frame.bottom(), frame.top + 1));
+        frame.left, frame.right(), plot.zero(), low, high, frame.top, frame.bottom(),
+        frame.top + 1));
   }
   return drawing;
 }

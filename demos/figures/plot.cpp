@@ -43,12 +43,15 @@ std::vector<Tick> ticks(const Axis& axis, int count) {
     const int first = static_cast<int>(std::floor(std::log10(axis.low)));
     const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
     const int every = std::max(1, (last - first + count) / (count + 1));
+    // Within two decades their powers alone would be too few.
+    const bool narrow = axis.high / axis.low < 60;
     for (int exponent = first; exponent <= last; ++exponent) {
       for (int digit = 1; digit <= 9; ++digit) {
         const double value = digit * std::pow(10, exponent);
         if (value < axis.low * (1 - 1e-9) || value > axis.high * (1 + 1e-9)) continue;
-        const bool named = digit == 1 && (exponent - first) % every == 0;
-        result.push_back({value, named ? power_of_ten(exponent) : ""});
+        const bool named =
+            digit == 1 ? (exponent - first) % every == 0 : narrow && (digit == 2 || digit == 5);
+        result.push_back({value, !named ? "" : digit == 1 ? power_of_ten(exponent) : shown(value)});
       }
     }
     return result;
@@ -93,15 +96,18 @@ void Plot::draw_axes(Drawing& drawing, double left) const {
     drawing.line({x, frame_.top}, {x, frame_.bottom() + 5}, "grid");
     drawing.text({x, frame_.bottom() + 18}, tick.label, Anchor::middle, "muted");
   }
+  double widest = 25;  // of y's numbers
   for (const Tick& tick : ticks(y_, static_cast<int>(frame_.height / 40))) {
     const double y = at(x_.low, tick.value).y;
     if (tick.label.empty()) continue;
+    widest = std::max(widest, text_width(tick.label));
     drawing.line({frame_.left, y}, {frame_.right(), y}, "grid");
     drawing.text({frame_.left - left, y + 4}, tick.label, Anchor::end, "muted");
   }
   drawing.line({frame_.left, frame_.bottom()}, {frame_.right(), frame_.bottom()}, "rule");
   drawing.text({frame_.left + frame_.width / 2, frame_.bottom() + 35}, x_.title, Anchor::middle);
-  drawing.vertical_text({frame_.left - left - 31, frame_.top + frame_.height / 2}, y_.title);
+  drawing.vertical_text({frame_.left - left - widest - 6, frame_.top + frame_.height / 2},
+                        y_.title);
 }
 
 Plot Plot::with_equal_scales(const Box& frame, Axis x, Axis y) {

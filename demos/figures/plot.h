@@ -22,7 +22,7 @@ struct Tick {
 };
 
 /// About `count` round values from low to high (1, 2 or 5 times a power of ten), or the powers of
-/// ten, with 2 … 9 times them as minor ticks.
+/// ten, with 2 … 9 times them as minor ticks (2 and 5 named where there are few powers).
 std::vector<Tick> ticks(const Axis& axis, int count);
 
 /// A value with three digits, as people write it: "0.0181", "12", "1.2·10⁻⁵".

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <nuno/optimize.h>
+#include <nuno/parallel.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "../figures/gain_figure.h"
+#include "../figures/trade_off_figure.h"
 #include "../output.h"
 #include "../rollouts.h"
 #include "../summary.h"
@@ -27,6 +30,7 @@ constexpr double most_frames = 60;
 constexpr Index most_particles = 64;
 constexpr double most_positions = 1e7;  // in memory, per flight
 constexpr double position_unit = 1e-4;  // of L
+constexpr std::size_t trades_to_pick = 8;
 
 double frames_per_second(const Problem& problem) {
   const double affordable =
@@ -52,17 +56,21 @@ Json rounded(const Points& points, double unit) {
   return result;
 }
 
-/// Frames as whole numbers, each the change since the one before.
+/// Frames as whole numbers, each the change of the change since the one before: a flight is smooth,
+/// and small numbers are short.
 Json packed(const Flight& flight, double unit) {
   Json result = Json::array();
-  std::vector<long long> last(2 * static_cast<std::size_t>(flight.target.cols()), 0);
+  const auto size = 2 * static_cast<std::size_t>(flight.target.cols());
+  std::vector<long long> last(size, 0), last_change(size, 0);
   for (const Points& positions : flight.positions) {
     for (Index i = 0; i < positions.cols(); ++i) {
       for (Index k = 0; k < 2; ++k) {
+        const auto at = static_cast<std::size_t>(2 * i + k);
         const long long value = std::llround(positions(k, i) / unit);
-        long long& before = last[static_cast<std::size_t>(2 * i + k)];
-        result.push_back(value - before);
-        before = value;
+        const long long change = value - last[at];
+        result.push_back(change - last_change[at]);
+        last[at] = value;
+        last_change[at] = change;
       }
     }
   }
@@ -83,13 +91,18 @@ Json to_json(const ReportScene& scene) {
   const double unit = position_unit * first.cloth_length;
   Json choices = Json::array();
   for (const ReportChoice& choice : scene.choices) {
-    Json gains = Json::array(), errors = Json::array(), frames = Json::array();
-    for (const Flight& flight : choice.flights) {
+    Json gains = Json::array(), errors = Json::array(), frames = Json::array(),
+         readings = Json::array();
+    for (std::size_t i = 0; i < choice.flights.size(); ++i) {
+      const Flight& flight = choice.flights[i];
       gains.push_back(flight.gain);
       errors.push_back(flight.error / flight.cloth_length);
       frames.push_back(packed(flight, unit));
+      readings.push_back({shown(flight.gain), shown(100 * flight.error / flight.cloth_length),
+                          shown(choice.efforts[i])});
     }
-    choices.push_back({{"gains", gains}, {"errors", errors}, {"frames", frames}});
+    choices.push_back(
+        {{"gains", gains}, {"errors", errors}, {"readings", readings}, {"frames", frames}});
   }
   Json times = Json::array();
   for (const double time : first.times) times.push_back(std::round(1e6 * time) / 1e6);
@@ -143,9 +156,18 @@ std::string section(const ReportScene& scene, std::size_t number) {
   const Comparison& comparison = scene.comparison;
   std::string gains;
   for (std::size_t i = 0; i < scene.choices.size(); ++i) {
+    const ReportChoice& choice = scene.choices[i];
     gains +=
-        fmt::format("<label><input type=\"radio\" name=\"gain-{}\" value=\"{}\"{}>{}</label>\n",
-                    number, i, i == 0 ? " checked" : "", xml_text(scene.choices[i].label));
+        fmt::format("<label{}><input type=\"radio\" name=\"gain-{}\" value=\"{}\"{}>{}</label>\n",
+                    choice.is_trade ? " class=\"trade\"" : "", number, i, i == 0 ? " checked" : "",
+                    xml_text(choice.label));
+  }
+  std::string readings;
+  for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
+    readings += fmt::format(
+        "<tr><td class=\"engine\">{}{}</td><td data-part=\"reading-{}-0\"></td>"
+        "<td data-part=\"reading-{}-1\"></td><td data-part=\"reading-{}-2\"></td></tr>\n",
+        key(i), engine_name(comparison.rows[i].backend), i, i, i);
   }
   return fmt::format(
       R"(<section class="scene" id="scene-{number}" aria-label="{name}">
@@ -170,6 +192,8 @@ value="0.25">× 0.25</option><option value="0.5">× 0.5</option><option value="1
 <div><dt>{key_b}{engine_b}, <span data-part="what-1"></span></dt><dd data-part="error-1"></dd></div>
 <div><dt>engines apart</dt><dd data-part="apart-now"></dd></div>
 </dl>
+<fieldset class="gains" data-part="gains"><legend>Gain of the flights shown</legend>
+{gains}</fieldset>
 <h3 class="below">Engines apart on the way, mean [% of L]</h3>
 <div data-part="apart"></div>
 <button type="button" class="link" data-part="most"></button>
@@ -178,8 +202,16 @@ value="0.25">× 0.25</option><option value="0.5">× 0.5</option><option value="1
 <div>
 <h3>Error at arrival, by gain</h3>
 {figure}
-<fieldset class="gains" data-part="gains"><legend>Gain of the flights shown</legend>
-{gains}</fieldset>
+<h3 class="below">Error at arrival, by control effort</h3>
+<div data-part="trade-off">
+{trade_off}</div>
+<p class="note">Lines: the gains that no other beats in both. <span class="screen">Click a point to fly
+it.</span></p>
+<table class="trade" aria-live="polite">
+<thead><tr><th class="engine">flight shown</th><th>α<small>N/m</small></th><th>error<small>% of
+L</small></th><th>effort<small>{unit}</small></th></tr></thead>
+<tbody>
+{readings}</tbody></table>
 </div>
 </div>
 </section>
@@ -189,7 +221,27 @@ value="0.25">× 0.25</option><option value="0.5">× 0.5</option><option value="1
       fmt::arg("length", shown(comparison.cloth_length)), fmt::arg("key_a", key(0)),
       fmt::arg("key_b", key(1)), fmt::arg("engine_a", engine_name(comparison.rows[0].backend)),
       fmt::arg("engine_b", engine_name(comparison.rows[1].backend)),
-      fmt::arg("figure", gain_figure(scene, 440, true)), fmt::arg("gains", gains));
+      fmt::arg("figure", gain_figure(scene, 440, true)), fmt::arg("gains", gains),
+      fmt::arg("trade_off", trade_off_figure(scene, 440, true)),
+      fmt::arg("unit", xml_text(scene.effort_unit)), fmt::arg("readings", readings));
+}
+
+/// What an engine's flights of a comparison paid for their errors.
+TradeOffCurve trade_off_curve(const Comparison& comparison, std::size_t engine) {
+  const ComparisonRow& row = comparison.rows[engine];
+  const TradeOffPoint best = {row.gain, row.error.mean, row.control_effort};
+  TradeOffCurve curve{.backend = row.backend, .flights = {best}, .best = best};
+  for (std::size_t k = 0; k < comparison.curve_gains.size(); ++k) {
+    curve.flights.push_back({comparison.curve_gains[k], comparison.curve_errors[engine][k],
+                             comparison.curve_efforts[engine][k]});
+  }
+  std::ranges::sort(curve.flights, {}, &TradeOffPoint::gain);
+  return curve;
+}
+
+std::string subtitle(const ReportScene& scene) {
+  return fmt::format("{}, {} particles, t₀ = {} s, both engines", scene.comparison.scene,
+                     scene.particles, shown(scene.arrival_time));
 }
 
 std::string replaced(std::string_view page, std::string_view mark, const std::string& text) {
@@ -206,35 +258,57 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
   ReportScene scene{.comparison = comparison,
                     .particles = problem.chain.particles(),
                     .arrival_time = problem.arrival_time,
+                    .effort_unit = effort_unit_name(problem.chain),
                     .descent = {},
                     .choices = {}};
-  const RolloutOptions frames = {.frames_per_second = frames_per_second(problem)};
-  const auto fly = [&](const std::string& label, double first_gain, double second_gain) {
-    show_progress(fmt::format("{}: flights for the report", comparison.scene));
-    const Rollout one = rollout(first, first_gain, frames);
-    const Rollout other = rollout(second, second_gain, frames);
-    if (diverged(one) || diverged(other)) return;
-    ReportChoice choice{
-        label,
-        {make_flight(comparison.scene, first, one), make_flight(comparison.scene, second, other)}};
-    for (Flight& flight : choice.flights) {
-      flight.target = thinned(flight.target);
-      for (Points& positions : flight.positions) positions = thinned(positions);
-    }
-    scene.choices.push_back(std::move(choice));
+  struct Wish {
+    std::string label;
+    double first_gain = 0, second_gain = 0;
+    bool is_trade = false;
   };
   const double best = comparison.rows[0].gain, other_best = comparison.rows[1].gain;
+  const auto differs = [&](double gain) { return std::abs(gain - best) > 0.01 * best; };
+  std::vector<Wish> wishes = {{"each at its own best", best, other_best}};
+  if (differs(other_best)) {
+    wishes.push_back({fmt::format("both at native’s best, {}", shown(best)), best, best});
+    wishes.push_back(
+        {fmt::format("both at Box2D’s best, {}", shown(other_best)), other_best, other_best});
+  }
   const OptimizeSummary descent = steepest_descent(objective(first));
   scene.descent = descent.history;
-  fly("each at its own best", best, other_best);
-  if (std::abs(best - other_best) > 0.01 * best) {
-    fly(fmt::format("both at native’s best, {}", shown(best)), best, best);
-    fly(fmt::format("both at Box2D’s best, {}", shown(other_best)), other_best, other_best);
+  if (differs(descent.gain)) {
+    wishes.push_back(
+        {fmt::format("where descent ends, {}", shown(descent.gain)), descent.gain, descent.gain});
   }
-  if (std::abs(descent.gain - best) > 0.01 * best) {
-    fly(fmt::format("where descent ends, {}", shown(descent.gain)), descent.gain, descent.gain);
+  wishes.push_back({"launch only, 0", 0, 0});
+  for (const TradeOffPoint& point : spread_along(trade_off_curve(comparison, 0), trades_to_pick)) {
+    if (!differs(point.gain)) continue;
+    wishes.push_back(
+        {fmt::format("α = {} N/m: error {} %, effort {}", shown(point.gain),
+                     shown(100 * point.error / comparison.cloth_length), shown(point.effort)),
+         point.gain, point.gain, true});
   }
-  fly("launch only, 0", 0, 0);
+
+  const RolloutOptions frames = {.frames_per_second = frames_per_second(problem)};
+  for (const Wish& wish : wishes) {
+    show_progress(fmt::format("{}: flight {} of {} for the report", comparison.scene,
+                              &wish - wishes.data() + 1, wishes.size()));
+    std::array<Rollout, 2> rollouts;
+    parallel_for(2, [&](Index i) {
+      rollouts[static_cast<std::size_t>(i)] = i == 0 ? rollout(first, wish.first_gain, frames)
+                                                     : rollout(second, wish.second_gain, frames);
+    });
+    if (std::ranges::any_of(rollouts, diverged)) continue;
+    ReportChoice choice{wish.label, wish.is_trade, {}, {}};
+    for (std::size_t i = 0; i < 2; ++i) {
+      Flight flight = make_flight(comparison.scene, i == 0 ? first : second, rollouts[i]);
+      flight.target = thinned(flight.target);
+      for (Points& positions : flight.positions) positions = thinned(positions);
+      choice.flights.push_back(std::move(flight));
+      choice.efforts.push_back(rollouts[i].control_effort);
+    }
+    scene.choices.push_back(std::move(choice));
+  }
   clear_progress();
   return scene;
 }
@@ -265,10 +339,33 @@ std::string gain_figure(const ReportScene& scene, double width, bool for_page) {
   options.cursor = for_page;
   if (!for_page) {
     options.title = "Error at arrival against the gain of the shape control";
-    options.subtitle = fmt::format("{}, {} particles, t₀ = {} s, both engines", comparison.scene,
-                                   scene.particles, shown(scene.arrival_time));
+    options.subtitle = subtitle(scene);
   }
   return draw_gain_curves(curves, comparison.cloth_length, options).svg(!for_page);
+}
+
+std::string trade_off_figure(const ReportScene& scene, double width, bool for_page) {
+  const Comparison& comparison = scene.comparison;
+  TradeOffFigure options;
+  options.width = width;
+  options.height = for_page ? 300 : 430;
+  options.effort_unit = scene.effort_unit;
+  if (for_page) {
+    for (const ReportChoice& choice : scene.choices) {
+      TradeOffPick pick{.places = {}, .has_dots = choice.is_trade || options.picks.empty()};
+      for (std::size_t i = 0; i < choice.flights.size(); ++i) {
+        const Flight& flight = choice.flights[i];
+        pick.places.push_back({flight.gain, flight.error, choice.efforts[i]});
+      }
+      options.picks.push_back(std::move(pick));
+    }
+  } else {
+    options.title = "Error at arrival against control effort";
+    options.subtitle = subtitle(scene);
+  }
+  return draw_trade_off({trade_off_curve(comparison, 0), trade_off_curve(comparison, 1)},
+                        comparison.cloth_length, options)
+      .svg(!for_page);
 }
 
 std::string report_page(const std::vector<ReportScene>& scenes) {

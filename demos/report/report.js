@@ -1,6 +1,6 @@
 'use strict';
-// Plays what the page holds: for each scene and gain, both engines' frames as whole numbers, the
-// first absolute, each other the change since the frame before.
+// Plays what the page holds: for each scene and gain, both engines' frames as whole numbers, each
+// the change of the change since the frame before.
 
 const svgSpace = 'http://www.w3.org/2000/svg';
 const scenes = JSON.parse(document.getElementById('flights').textContent);
@@ -15,12 +15,11 @@ function element(parent, name, attributes, text) {
 
 function unpacked(flat, size, unit) {
   const frames = [];
-  let last = new Int32Array(size);
+  const place = new Int32Array(size);
+  const change = new Int32Array(size);
   for (let start = 0; start < flat.length; start += size) {
-    const next = new Int32Array(size);
-    for (let i = 0; i < size; ++i) next[i] = last[i] + flat[start + i];
-    frames.push(Float64Array.from(next, (value) => value * unit));
-    last = next;
+    for (let i = 0; i < size; ++i) place[i] += change[i] += flat[start + i];
+    frames.push(Float64Array.from(place, (value) => value * unit));
   }
   return frames;
 }
@@ -68,6 +67,7 @@ class SceneView {
     this.find('gains').addEventListener('change', (event) => {
       this.choose(Number(event.target.value));
     });
+    this.find('trade-off').addEventListener('click', (event) => this.pick(event));
     this.find('most').addEventListener('click', () => {
       this.pause();
       this.show(this.most.time);
@@ -114,7 +114,32 @@ class SceneView {
     const s = Math.log(gain / low) / Math.log(high / low);
     const x = gain <= 0 ? Number(zero) : Number(left) + Math.max(0, Math.min(1, s)) * (right - left);
     cursor.setAttribute('transform', `translate(${x} 0)`);
+    for (const rings of this.root.querySelectorAll('.rings-of')) {
+      rings.classList.toggle('on', Number(rings.dataset.choice) === choice);
+    }
+    this.data.choices[choice].readings.forEach((readings, engine) => {
+      readings.forEach((text, i) => { this.find(`reading-${engine}-${i}`).textContent = text; });
+    });
     if (this.plot) this.drawOver();
+  }
+
+  /// The dot of the trade-off next to a click, if one is near: its button among the gains, so that
+  /// keys go on from there.
+  pick(click) {
+    let [choice, nearest] = [null, 24];
+    for (const dots of this.root.querySelectorAll('.dots-of')) {
+      for (const dot of dots.children) {
+        const box = dot.getBoundingClientRect();
+        const distance = Math.hypot((box.left + box.right) / 2 - click.clientX,
+          (box.top + box.bottom) / 2 - click.clientY);
+        if (distance < nearest) [choice, nearest] = [dots.dataset.choice, distance];
+      }
+    }
+    if (choice === null) return;
+    const button = this.find('gains').querySelector(`[value="${choice}"]`);
+    button.checked = true;
+    button.focus({ preventScroll: true });
+    this.choose(Number(choice));
   }
 
   draw(width) {

@@ -104,6 +104,30 @@ test('scrubbed to the arrival, it shows the errors of the comparison', async () 
   await page.close();
 });
 
+test('the cloths are drawn to scale: what they miss on the page is what it says', async () => {
+  const page = await opened();
+  for (let scene = 1; scene <= 4; ++scene) {
+    for (const label of ['each at its own best', 'launch only']) {
+      await page.locator(`#scene-${scene} .gains label`, { hasText: label }).click();
+      const [target, ...cloths] = await page.evaluate((id) =>
+        ['.band', '.thick.a', '.thick.b'].map((name) =>
+          document.querySelector(`#${id} [data-part="stage"] polyline${name}`)
+            .getAttribute('points').trim().split(' ').map((place) => place.split(',').map(Number))),
+      `scene-${scene}`);
+      const apart = ([x, y], [u, v]) => Math.hypot(x - u, y - v);
+      const length = target.slice(1).reduce((sum, place, i) => sum + apart(place, target[i]), 0);
+      for (const engine of [0, 1]) {
+        const sum = target.reduce((all, place, i) => all + apart(place, cloths[engine][i]), 0);
+        const measured = (100 * sum) / target.length / length;
+        const said = parseFloat(await shown(page, `error-${engine}`, scene));
+        // Places are written to a tenth of a pixel, of a cloth of more than a hundred.
+        assert.ok(Math.abs(measured - said) < 0.08, `${measured} is not ${said}`);
+      }
+    }
+  }
+  await page.close();
+});
+
 test('another gain moves the cloths and the mark on the curve', async () => {
   const page = await opened();
   const cursor = page.locator('#scene-1 .cursor');
@@ -117,6 +141,80 @@ test('another gain moves the cloths and the mark on the curve', async () => {
   assert.ok(await page.locator('#scene-1 [data-part="stage"] circle').isVisible());
   await page.close();
 });
+
+/// The row of compare.json's curve with a gain that the page shows to three digits.
+function curvePoint(shownGain, scene = 1) {
+  const { alpha, native, box2d, control_effort: effort } = comparison.scenes[scene - 1].alpha_curve;
+  const i = alpha.findIndex((gain) => Math.abs(gain - shownGain) <= 0.006 * gain);
+  return { gain: alpha[i], errors: [native[i], box2d[i]], efforts: [effort.native[i], effort.box2d[i]] };
+}
+
+const centre = ({ x, y, width, height }) => [x + width / 2, y + height / 2];
+
+for (const viewport of [{ width: 1280, height: 900 }, { width: 390, height: 844 }]) {
+  test(`a click at a point of the trade-off flies it, at ${viewport.width} px`, async () => {
+    const page = await opened({ viewport });
+    await part(page, 'trade-off').scrollIntoViewIfNeeded();
+    const dots = page.locator('#scene-1 .dots-of circle');
+    const places = [];
+    for (const dot of await dots.all()) places.push(centre(await dot.boundingBox()));
+    assert.ok(places.length >= 5, `${places.length} points`);
+    places.sort(([a], [b]) => a - b);
+    for (let i = 1; i < places.length; ++i) {
+      assert.ok(places[i][1] > places[i - 1][1], 'more effort, less error');
+    }
+    const rings = page.locator('#scene-1 .rings-of circle.a:visible');
+    const ringAt = async (place) => {
+      const [x, y] = centre(await rings.last().boundingBox());
+      return Math.hypot(x - place[0], y - place[1]) < 1;
+    };
+    const before = await shown(page, 'error-0');
+    // The axes are logarithmic: three points say by their readings where they must be.
+    const logs = [];
+    for (const place of [places[0], places[places.length >> 1], places.at(-1)]) {
+      await page.mouse.click(...place);
+      logs.push([Math.log(parseFloat(await shown(page, 'reading-0-2'))),
+        -Math.log(parseFloat(await shown(page, 'reading-0-1'))), ...place]);
+    }
+    const share = (k) => (logs[1][k] - logs[0][k]) / (logs[2][k] - logs[0][k]);
+    for (const k of [0, 1]) {
+      assert.ok(Math.abs(share(k) - share(k + 2)) < 0.02, `${share(k)} is not ${share(k + 2)}`);
+    }
+    const picked = places[places.length >> 1];
+    await page.mouse.click(...picked);
+    const gain = parseFloat(await shown(page, 'reading-0-0'));
+    const wanted = curvePoint(gain);
+    for (const engine of [0, 1]) {
+      assert.equal(parseFloat(await shown(page, `reading-${engine}-0`)), gain);
+      const close = async (name, value) => {
+        const number = parseFloat(await shown(page, name));
+        assert.ok(Math.abs(number - value) <= 0.006 * value, `${name}: ${number} is not ${value}`);
+      };
+      await close(`reading-${engine}-1`, 100 * wanted.errors[engine]);
+      await close(`reading-${engine}-2`, wanted.efforts[engine]);
+      await close(`error-${engine}`, 100 * wanted.errors[engine]); // it flies, too
+    }
+    assert.notEqual(await shown(page, 'error-0'), before);
+    assert.ok(await ringAt(picked));
+    // The same gain on E(α).
+    const cursor = page.locator('#scene-1 .cursor');
+    const { left, right, low, high } = await cursor.evaluate((mark) => ({ ...mark.dataset }));
+    const x = Number(left) +
+      (Math.log(wanted.gain / low) / Math.log(high / low)) * (Number(right) - Number(left));
+    const marked = parseFloat((await cursor.getAttribute('transform')).slice('translate('.length));
+    assert.ok(Math.abs(marked - x) < 0.01, `${marked} is not ${x}`);
+    // Keys go on from there; a click at nothing changes nothing.
+    await page.keyboard.press('ArrowRight');
+    const next = parseFloat(await shown(page, 'reading-0-0'));
+    assert.ok(next > gain, `${next} is not above ${gain}`);
+    assert.ok(!await ringAt(picked));
+    const [firstX, firstY] = places[0];
+    await page.mouse.click(firstX, firstY + 60);
+    assert.equal(parseFloat(await shown(page, 'reading-0-0')), next);
+    assert.deepEqual(page.complaints, []);
+    await page.close();
+  });
+}
 
 test('it fits a phone, a dark screen and paper', async () => {
   for (const width of [360, 390, 768, 1280, 1920]) {

@@ -30,6 +30,10 @@ class Simulation {
 
   /// Mean velocity over the last step (the launch velocity before the first) [2 × N], m/s.
   virtual const Points& velocities() const = 0;
+
+  /// Why the engine gave this flight up, in its own words; empty while it flies, and for an engine
+  /// that lets bad numbers run.
+  virtual std::string_view failure() const { return {}; }
 };
 
 /// How one gain arrives, and the derivatives with respect to it.

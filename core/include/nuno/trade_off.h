@@ -14,9 +14,12 @@ struct TradeOffPoint {
   double effort = 0;  ///< control effort, see Rollout
 };
 
-/// The best trades of error for effort: launch only, and the gains (log-spaced over the objective's
-/// range, `count` of them) that no other beats in both. Ascending in effort, descending in error;
-/// rollouts that diverge are left out.
+/// Those of some points that no other beats in both error and effort: ascending in effort,
+/// descending in error. Points without a finite error (rollouts that diverged) are left out.
+std::vector<TradeOffPoint> best_trades(std::vector<TradeOffPoint> points);
+
+/// The best trades of a backend's problem: among launch only and the gains (log-spaced over the
+/// objective's range, `count` of them).
 std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count = 64);
 
 /// The point of least effort whose error is at most `error_limit` [m], between the points of
