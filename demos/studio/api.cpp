@@ -48,6 +48,11 @@ constexpr double most_flights_after = 10;  // seconds after arrival, in arrival 
 constexpr double longest_film = 10;        // seconds
 constexpr std::size_t longest_page = 64;
 
+// A search for an eye that watches the shape change: a thousandth of the error more or less is
+// below what it sees.
+constexpr GlobalSearchOptions while_changing = {
+    .rounds = 3, .gain_tolerance = 1e-3, .error_tolerance = 1e-3};
+
 std::string dump(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -79,6 +84,7 @@ struct Options {
   std::string optimizer{optimizer_names.front()};
   double alpha = 0;
   bool has_alpha = false;
+  std::optional<double> warm_start;
   Index frames = 0;
   double after = 0;
 };
@@ -125,6 +131,8 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
     } else if (name == "alpha") {
       options.alpha = number(name, text);
       options.has_alpha = true;
+    } else if (name == "warm_start") {
+      options.warm_start = number(name, text);
     } else if (name == "frames") {
       const double frames = number(name, text);
       if (frames != std::floor(frames) || frames > static_cast<double>(most_frames)) {
@@ -135,6 +143,9 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
     } else {
       options.after = number(name, text);
     }
+  }
+  if (options.warm_start && options.optimizer != optimizer_names.front()) {
+    throw InputError(fmt::format("warm_start: is not for the optimizer {}", options.optimizer));
   }
   return options;
 }
@@ -244,6 +255,13 @@ struct Throw {
   Rollout flight;
 };
 
+OptimizeSummary search(const Options& options, const Objective& objective) {
+  if (!options.warm_start) return run_optimizer(options.optimizer, objective);
+  GlobalSearchOptions quick = while_changing;
+  quick.warm_start = options.warm_start;
+  return global_search(objective, quick);
+}
+
 /// As `nuno optimize` and `nuno simulate` do it, with their functions and options.
 Throw run(const std::string& body, const Options& options, bool optimizes, const Turn& turn,
           bool keeps_frames) {
@@ -255,7 +273,7 @@ Throw run(const std::string& body, const Options& options, bool optimizes, const
   require_quick(file, *result.backend, options);
   double gain = options.alpha;
   if (optimizes) {
-    result.found = run_optimizer(options.optimizer, cancellable(*result.backend, turn));
+    result.found = search(options, cancellable(*result.backend, turn));
     gain = result.found->gain;
   }
   turn.check();
@@ -370,7 +388,8 @@ Json about() {
           {"defaults", defaults}};
 }
 
-const std::set<std::string_view> of_optimize = {"page", "backend", "optimizer", "frames", "after"};
+const std::set<std::string_view> of_optimize = {"page",       "backend", "optimizer",
+                                               "warm_start", "frames",  "after"};
 const std::set<std::string_view> of_simulate = {"page", "backend", "alpha", "frames", "after"};
 const std::set<std::string_view> of_result = {"page", "backend", "optimizer", "alpha"};
 
