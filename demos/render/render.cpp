@@ -123,6 +123,7 @@ void write_film(const std::vector<Flight>& flights, const FlightFigure& figure,
           }
           show_progress(fmt::format("{}: frame {} of {}", options.out,
                                     std::min(start + together, count), count));
+          if (options.progress) options.progress(static_cast<double>(start) / (arrived + 1));
         }
         // At rest one picture is as good as another.
         for (int i = arrived + 1; i < count; ++i) std::fwrite(last.data(), 1, last.size(), ffmpeg);
