@@ -1,17 +1,17 @@
 // Error over something, both logarithmic: a curve, its marks, and a gain that is picked by a click, a
 // drag or the arrow keys.
 
-const margin = { left: 40, right: 10, top: 12, bottom: 26 };
+const margin = { left: 46, right: 10, top: 12, bottom: 26 };
 const zero_width = 22; // 0 has no place on a logarithmic axis: it has its own, at the left
 const snap = 5; // pixels
 const most_decades = 4; // of error, downwards from the largest
 
 export class Chart {
-  // options: {unit of the axis along, picks}: `picks` says what can be picked, 'values' (the axis is
-  // the gain itself) or 'points' of the first curve.
+  // `picks` says what can be picked: 'values' (the axis is the gain itself) or 'points' of the first
+  // curve.
   // `on_try(α, live)`: a gain to be tried; α null is the best one again.
-  constructor(canvas, options, on_try) {
-    Object.assign(this, options, { canvas, on_try });
+  constructor(canvas, picks, on_try) {
+    Object.assign(this, { canvas, picks, on_try });
     // {points: [{x, y, alpha}] along x, marks: those that stand out, best: one of them or null,
     //  color, faint}; y is a share.
     this.curves = [];
@@ -109,7 +109,8 @@ export class Chart {
 
   // Says whether there is anything to draw.
   measure() {
-    const points = this.curves.flatMap((curve) => curve.points);
+    if (!this.curves.length) return false;
+    const points = [...this.curves.flatMap((curve) => curve.points), ...(this.cursor ? [this.cursor] : [])];
     const along = points.map(({ x }) => x).filter((x) => x > 0);
     const shares = points.map(({ y }) => y).filter((y) => y > 0);
     if (!along.length || !shares.length) return false;
@@ -170,17 +171,15 @@ export class Chart {
     ctx.textBaseline = 'top';
     ctx.fillText('0', this.x(0), bottom + 6);
     const few = this.range[1] / this.range[0] < 300;
-    last = -Infinity;
+    last = this.x(0) + ctx.measureText('0').width / 2;
     for (const value of rounds(this.range, few ? [1, 2, 5] : [1])) {
       const at = this.x(value);
       line(Math.round(at) + 0.5, top, Math.round(at) + 0.5, bottom);
       const wide = ctx.measureText(name(value)).width;
-      if (at + wide / 2 > this.width - 12 - ctx.measureText(this.unit).width || at - wide / 2 < last + 6) continue;
+      if (at + wide / 2 > this.width || at - wide / 2 < last + 6) continue;
       last = at + wide / 2;
       ctx.fillText(name(value), at, bottom + 6);
     }
-    ctx.textAlign = 'right';
-    ctx.fillText(this.unit, this.width - 2, bottom + 6);
   }
 
   curve(ctx, { points, marks, best, color, faint }, colors) {

@@ -37,8 +37,8 @@ function minima(points) {
 export class Charts {
   // `on_try(α, live)` as of a Chart.
   constructor(on_try) {
-    this.gain = new Chart($('gain-chart'), { unit: 'N/m', picks: 'values' }, on_try);
-    this.trade = new Chart($('trade-chart'), { unit: '× weight', picks: 'points' }, on_try);
+    this.gain = new Chart($('gain-chart'), 'values', on_try);
+    this.trade = new Chart($('trade-chart'), 'points', on_try);
     this.drawn_curves = new WeakMap(); // of answers: their points and dips, made once
   }
 
@@ -54,6 +54,16 @@ export class Charts {
       this.drawn_curves.set(curve, { points, dips: minima(points) });
     }
     return this.drawn_curves.get(curve);
+  }
+
+  // The best throw ends the curve: more force is in vain. Between the gains of the curve it may lie in
+  // a narrow valley.
+  trade_of(curve, best_throw) {
+    const point = ({ alpha, error, control_effort }) => ({ x: control_effort, y: (error.mean ?? error) / curve.length, alpha });
+    const points = curve.points.map(point);
+    if (best_throw?.key !== curve.key) return { points, best: null };
+    const best = point(best_throw.flight);
+    return { points: [...points.filter(({ x, y }) => x < best.x && y > best.y), best], best };
   }
 
   draw_gain(colors) {
@@ -89,24 +99,20 @@ export class Charts {
   draw_trade(colors) {
     const { native } = app.results;
     const curve = native?.trade_off;
-    this.trade.unit = effort_unit();
-    this.trade.curves = [];
-    if (curve) {
-      const points = curve.points.map(({ alpha, error, control_effort }) => ({ x: control_effort, y: error / curve.length, alpha }));
-      this.trade.curves = [{ points, marks: [], best: null, color: colors.a, faint: curve.key !== native.key }];
-    }
+    $('trade-unit').textContent = effort_unit();
+    this.trade.curves = curve ? [{ ...this.trade_of(curve, native.best_throw), marks: [], color: colors.a, faint: curve.key !== native.key }] : [];
     const flight = native?.flight;
     this.trade.cursor = flight ? { x: flight.control_effort, y: flight.error.relative, alpha: app.alpha ?? flight.alpha } : null;
     this.trade.draw(colors);
     if (!curve || !flight) return;
-    const first = curve.points[0], last = curve.points.at(-1);
-    const percent = ({ error }) => `${digits((100 * error) / curve.length)} %`;
-    $('trade-note').textContent = curve.points.length < 2
+    const { first, last } = this.trade;
+    const percent = ({ y }) => `${digits(100 * y)} %`;
+    $('trade-note').textContent = first === last
       ? 'No control does better than none.'
-      : `From ${percent(first)} without force to ${percent(last)} at ${digits(last.control_effort)} ${effort_unit()}.`;
+      : `From ${percent(first)} without force to ${percent(last)} at ${digits(last.x)} ${effort_unit()}.`;
     const slider = $('trade-chart');
     slider.setAttribute('aria-valuemin', 0);
-    slider.setAttribute('aria-valuemax', last.control_effort);
+    slider.setAttribute('aria-valuemax', last.x);
     slider.setAttribute('aria-valuenow', flight.control_effort);
     slider.setAttribute('aria-valuetext', `${digits(100 * flight.error.relative)} percent off at an effort of ${digits(flight.control_effort)} ${effort_unit()}`);
   }

@@ -9,7 +9,7 @@ export const app = {
   own_gain: false, // Box2D searches for itself
   aims_off: false, // until the cloth is on the target
   alpha: null, // a gain tried by hand; null: the best
-  // By engine: {flight, key, stale, best, search, curve, trade_off}; a key is the text of the scene
+  // By engine: {flight, key, stale, best, best_throw, search, curve, trade_off}; a key is the text of the scene
   // that an answer is of.
   results: {},
   time: null, // of the flight [s]; null: the arrival

@@ -298,7 +298,7 @@ $('own').addEventListener('change', (event) => {
   throws.request(false);
   draw_soon(true);
 });
-$('preset').append(new Option('Shapes', ''), ...Object.entries(geometry.presets).map(([name, { label }]) => new Option(label, name)));
+$('preset').append(new Option('Shape', ''), ...Object.entries(geometry.presets).map(([name, { label }]) => new Option(label, name)));
 $('preset').addEventListener('change', (event) => {
   const wanted = geometry.length(scene().initial);
   reshape(geometry.preset(event.target.value, geometry.centroid(selected_line()), wanted));

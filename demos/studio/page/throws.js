@@ -106,7 +106,9 @@ export class Throws {
 
   take(engine, { answer, key, move }) {
     this.on.trouble(null);
-    Object.assign((app.results[engine] ??= {}), { flight: answer, key, stale: false });
+    const result = (app.results[engine] ??= {});
+    Object.assign(result, { flight: answer, key, stale: false });
+    if (answer.alpha === result.best && !answer.refinement) result.best_throw = { flight: answer, key };
     if (engine === 'native') this.latency.answer(move);
     this.on.shown();
   }

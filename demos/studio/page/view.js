@@ -33,8 +33,8 @@ export class View {
 
   // Where the things below the toolbars and above the hint have their room.
   get room() {
-    const { narrow, stacked } = this;
-    return { left: narrow ? 60 : 84, right: narrow ? 30 : 36, top: narrow ? 84 : 92, bottom: stacked ? 56 : 84 };
+    const { narrow } = this;
+    return { left: narrow ? 60 : 84, right: narrow ? 30 : 36, top: narrow ? 84 : 92, bottom: 84 };
   }
 
   to_screen([x, y]) {
@@ -94,7 +94,7 @@ export class View {
         ctx.fillStyle = view.cloths[0]?.color ?? colors.quiet;
         ctx.textAlign = 'center';
         ctx.textBaseline = 'alphabetic';
-        ctx.fillText(view.title, this.view_width / 2, this.view_height - (this.stacked ? 20 : 62));
+        ctx.fillText(view.title, this.view_width / 2, this.view_height - 62);
       }
       ctx.restore();
     });
