@@ -121,9 +121,9 @@ void write_film(const std::vector<Flight>& flights, const FlightFigure& figure,
             last = picture.get();
             std::fwrite(last.data(), 1, last.size(), ffmpeg);
           }
-          show_progress(fmt::format("{}: frame {} of {}", options.out,
-                                    std::min(start + together, count), count));
-          if (options.progress) options.progress(static_cast<double>(start) / (arrived + 1));
+          const int done = std::min(start + together, arrived + 1);
+          show_progress(fmt::format("{}: frame {} of {}", options.out, done, count));
+          if (options.progress) options.progress(static_cast<double>(done) / (arrived + 1));
         }
         // At rest one picture is as good as another.
         for (int i = arrived + 1; i < count; ++i) std::fwrite(last.data(), 1, last.size(), ffmpeg);
