@@ -212,6 +212,25 @@ test('a gain is tried along the curve, and the best is taken again', async () =>
   assert.deepEqual(await flight_of('native'), best);
 });
 
+test('a request that comes late to the program does not take the place of a newer one', async () => {
+  let late = true;
+  const delay = async (route) => {
+    if (late) {
+      late = false;
+      await new Promise((resolve) => setTimeout(resolve, 300));
+    }
+    await route.continue();
+  };
+  await page.route('**/api/simulate*', delay);
+  const box = await page.locator('#gain-chart').boundingBox();
+  await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.5 * box.height); // asks while down, and again
+  await settled();
+  await page.unroute('**/api/simulate*', delay);
+  assert.equal((await flight_of('native')).alpha, await page.evaluate(() => nuno_studio.app.alpha));
+  await page.keyboard.press('Enter');
+  await settled();
+});
+
 test('error is traded for effort along the second curve', async () => {
   const best = await flight_of('native');
   const trade_off = () => page.evaluate(() => nuno_studio.app.results.native.trade_off.points);

@@ -1,7 +1,7 @@
 // Error over something, both logarithmic: a curve, its marks, and a gain that is picked by a click, a
 // drag or the arrow keys.
 
-const margin = { left: 46, right: 10, top: 12, bottom: 26 };
+const margin = { left: 50, right: 10, top: 12, bottom: 26 };
 const zero_width = 22; // 0 has no place on a logarithmic axis: it has its own, at the left
 const snap = 5; // pixels
 const most_decades = 4; // of error, downwards from the largest
@@ -110,8 +110,9 @@ export class Chart {
   // Says whether there is anything to draw.
   measure() {
     if (!this.curves.length) return false;
-    const points = [...this.curves.flatMap((curve) => curve.points), ...(this.cursor ? [this.cursor] : [])];
-    const along = points.map(({ x }) => x).filter((x) => x > 0);
+    const points = this.curves.flatMap((curve) => curve.points);
+    // The cursor may lie beyond the curve; a throw that is aimed off, as deep below it as rounding.
+    const along = [...points, ...(this.cursor ? [this.cursor] : [])].map(({ x }) => x).filter((x) => x > 0);
     const shares = points.map(({ y }) => y).filter((y) => y > 0);
     if (!along.length || !shares.length) return false;
     this.range = [Math.min(...along), Math.max(...along)];

@@ -60,14 +60,19 @@ export class Channel {
 
   async start(job) {
     this.running++;
+    let again = false;
     try {
       const result = await job.work(this.page);
       if (!this.overtaken(job)) job.done(result);
     } catch (error) {
+      // The newest gives way to nothing: an older request came later to the program than it did.
+      again = error?.status === 409 && job.number === this.newest;
       if (error?.status !== 409 && !this.overtaken(job)) job.failed(error);
     } finally {
       this.running--;
-      if (this.running === 0 && this.waiting) {
+      if (again) {
+        this.start(job);
+      } else if (this.running === 0 && this.waiting) {
         const next = this.waiting;
         this.waiting = null;
         this.start(next);
