@@ -212,20 +212,16 @@ test('a gain is tried along the curve, and the best is taken again', async () =>
   assert.deepEqual(await flight_of('native'), best);
 });
 
-test('a request that comes late to the program does not take the place of a newer one', async () => {
-  let late = true;
-  const delay = async (route) => {
-    if (late) {
-      late = false;
-      await new Promise((resolve) => setTimeout(resolve, 300));
-    }
-    await route.continue();
-  };
-  await page.route('**/api/simulate*', delay);
+test('a request that an older one overtook on its way is sent again', async () => {
+  // As the program answers it: the older one came later and took its place.
+  let asked = 0;
+  const overtake = (route) => ++asked === 2 ? route.fulfill({ status: 409, json: { error: 'overtaken' } }) : route.continue();
+  await page.route('**/api/simulate*', overtake);
   const box = await page.locator('#gain-chart').boundingBox();
-  await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.5 * box.height); // asks while down, and again
+  await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.5 * box.height); // asks when down, and when up
   await settled();
-  await page.unroute('**/api/simulate*', delay);
+  await page.unroute('**/api/simulate*', overtake);
+  assert.equal(asked, 3);
   assert.equal((await flight_of('native')).alpha, await page.evaluate(() => nuno_studio.app.alpha));
   await page.keyboard.press('Enter');
   await settled();
