@@ -112,6 +112,28 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
   return backend;
 }
 
+RefineSummary aim_off(std::string_view name, const SceneFile& file, double gain,
+                      const std::function<void()>& before_rollout) {
+  const auto maker = [&](std::string_view engine) -> MakeBackend {
+    return [&, make = backend_maker(engine, file)](const Problem& problem) {
+      if (before_rollout) before_rollout();
+      return make(problem);
+    };
+  };
+  const MakeBackend model = maker("native");
+  RefineSummary refined = refine(file.problem, gain, model, model);
+  if (name == "native") return refined;
+  Problem aimed = file.problem;
+  aimed.aim_offset = refined.aim_offset;
+  constexpr double single_precision = 1e-5;
+  RefineSummary corrected =
+      refine(aimed, gain, maker(name), model, {.tolerance = single_precision, .rounds = 4});
+  corrected.rollouts += refined.rollouts;
+  corrected.tangents += refined.tangents;
+  corrected.seconds += refined.seconds;
+  return corrected;
+}
+
 OptimizeSummary run_optimizer(std::string_view name, const Objective& objective) {
   if (name == "steepest-descent") return steepest_descent(objective);
   assert(name == "global");

@@ -5,6 +5,7 @@
 #include <nuno/refine.h>
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -40,6 +41,11 @@ MakeBackend backend_maker(std::string_view name, const SceneFile& file);
 /// The same with a step that is short enough for `gain` as well.
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
                                                double gain);
+
+/// Aims off on the native chain, and then, on another engine, off what is left there.
+/// `before_rollout` is called before each; what it throws ends the work.
+RefineSummary aim_off(std::string_view name, const SceneFile& file, double gain,
+                      const std::function<void()>& before_rollout = {});
 
 inline constexpr std::array<std::string_view, 2> optimizer_names = {"global", "steepest-descent"};
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <nuno/feasibility.h>
-#include <nuno/refine.h>
 #include <nuno/robust.h>
 #include <nuno/trade_off.h>
 
@@ -57,22 +56,6 @@ Optimization trade(const OptimizeOptions& options, const SceneFile& file, const 
   return found;
 }
 
-/// Aims off on the native chain, and then, on another engine, off what is left there.
-RefineSummary aim_off(const OptimizeOptions& options, const SceneFile& file, double gain) {
-  const MakeBackend model = backend_maker("native", file);
-  RefineSummary refined = refine(file.problem, gain, model, model);
-  if (options.backend == "native") return refined;
-  Problem aimed = file.problem;
-  aimed.aim_offset = refined.aim_offset;
-  constexpr double single_precision = 1e-5;
-  RefineSummary corrected = refine(aimed, gain, backend_maker(options.backend, file), model,
-                                   {.tolerance = single_precision, .rounds = 4});
-  corrected.rollouts += refined.rollouts;
-  corrected.tangents += refined.tangents;
-  corrected.seconds += refined.seconds;
-  return corrected;
-}
-
 }  // namespace
 
 ExitStatus optimize(const OptimizeOptions& options) {
@@ -89,7 +72,7 @@ ExitStatus optimize(const OptimizeOptions& options) {
   clear_progress();
   const double gain = found.summary.gain;
   if (options.refine) {
-    found.refinement = aim_off(options, file, gain);
+    found.refinement = aim_off(options.backend, file, gain);
     file.problem.aim_offset = found.refinement->aim_offset;
     backend = make_backend(options.backend, file);
   }

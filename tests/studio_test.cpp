@@ -25,6 +25,7 @@
 #include <mutex>
 #include <optional>
 #include <random>
+#include <regex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -195,10 +196,26 @@ TEST_F(Studio, ServesThePageAndItsParts) {
   const std::string page = get("/");
   EXPECT_EQ(status_of(page), 200);
   EXPECT_NE(page.find("Content-Security-Policy: default-src 'self'"), std::string::npos);
-  for (const char* part : {"/studio.js", "/studio.css", "/view.js", "/editor.js", "/chart.js",
-                           "/client.js", "/scene.js", "/geometry.js", "/api/about"}) {
-    EXPECT_EQ(status_of(get(part)), 200) << part;
+  // Every module that the page asks for, from the first one on.
+  std::vector<std::string> parts = {"/studio.css", "/studio.js", "/api/about"};
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const std::string part = get(parts[i]);
+    EXPECT_EQ(status_of(part), 200) << parts[i];
+    const std::regex import("from '\\.(/[a-z]+\\.js)'");
+    for (std::sregex_iterator at(part.begin(), part.end(), import), end; at != end; ++at) {
+      const std::string found = (*at)[1];
+      if (std::ranges::find(parts, found) == parts.end()) parts.push_back(found);
+    }
   }
+  EXPECT_GT(parts.size(), 10u);
+}
+
+TEST_F(Studio, PacksNothing) {
+  const std::string answer =
+      post("/api/optimize?frames=4", small_scene, "Accept-Encoding: gzip, deflate, br\r\n");
+  EXPECT_EQ(status_of(answer), 200);
+  EXPECT_EQ(answer.find("Content-Encoding"), std::string::npos);
+  EXPECT_TRUE(json_of(answer).is_object());
 }
 
 TEST_F(Studio, ListensOnTheLoopbackAlone) {
@@ -234,6 +251,73 @@ TEST_F(Studio, AnswersAsTheCommandLineToTheLastBit) {
       EXPECT_EQ(answer[field], expected[field]) << request << ' ' << field;
     }
   }
+}
+
+TEST_F(Studio, AWarmStartFollowsTheBestGain) {
+  const std::string scene = text_of(NUNO_SCENES "/letter-z.json");
+  const Json best = json_of(post("/api/optimize", scene));
+  const std::string start = std::to_string(1.1 * best["alpha"].get<double>());
+  const Json warm = json_of(post("/api/optimize?warm_start=" + start, scene));
+  // What the search promises: a thousandth of the error, and the valley is that of the best.
+  EXPECT_NEAR(warm["error"]["mean"].get<double>(), best["error"]["mean"].get<double>(),
+              2e-3 * best["error"]["mean"].get<double>());
+  EXPECT_LT(warm["optimization"]["evaluations"], best["optimization"]["evaluations"]);
+}
+
+TEST_F(Studio, AimsOffAsTheCommandLineDoes) {
+  Json scene = Json::parse(small_scene);
+  scene["reference"] = "morph";
+  scene["damping_ratio"] = 0.7;
+  const std::string path =
+      testing::TempDir() + "studio-" + std::to_string(::getpid()) + "-scene.json";
+  const std::string out = path + ".out";
+  std::ofstream(path) << scene.dump();
+  const std::string command = std::string(NUNO_PROGRAM) + " optimize --refine " + path + " --out " +
+                              out + " > /dev/null 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  const Json expected = Json::parse(text_of(out));
+  std::filesystem::remove(path);
+  std::filesystem::remove(out);
+
+  const Json plain = json_of(post("/api/optimize", scene.dump()));
+  const Json aimed = json_of(post("/api/optimize?refine=1", scene.dump()));
+  EXPECT_EQ(aimed["error"], expected["error"]);
+  EXPECT_EQ(aimed["refinement"]["error_before"], plain["error"]["mean"]);
+  EXPECT_LT(aimed["error"]["mean"], plain["error"]["mean"]);
+  const Json result = json_of(post("/api/result?refine=1", scene.dump()));
+  EXPECT_EQ(result["final"], expected["final"]);
+  EXPECT_EQ(result["optimization"]["refinement"]["aim_offset"],
+            expected["optimization"]["refinement"]["aim_offset"]);
+
+  const Json given =
+      json_of(post("/api/simulate?refine=1&alpha=" + aimed["alpha"].dump(), scene.dump()));
+  EXPECT_EQ(given["error"], expected["error"]);
+  const Json given_result =
+      json_of(post("/api/result?refine=1&alpha=" + aimed["alpha"].dump(), scene.dump()));
+  EXPECT_EQ(given_result["optimization"]["refinement"]["aim_offset"],
+            expected["optimization"]["refinement"]["aim_offset"]);
+}
+
+TEST_F(Studio, TradesErrorForEffort) {
+  const Json answer = json_of(post("/api/trade_off", small_scene));
+  const Json& curve = answer["trade_off"];
+  ASSERT_GT(curve.size(), 2u);
+  EXPECT_EQ(curve[0]["alpha"], 0);
+  EXPECT_EQ(curve[0]["control_effort"], 0);
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    EXPECT_GT(curve[i]["control_effort"], curve[i - 1]["control_effort"]);
+    EXPECT_LT(curve[i]["error"], curve[i - 1]["error"]);
+  }
+  const Json& last = curve.back();
+  const Json there = json_of(post("/api/simulate?alpha=" + last["alpha"].dump(), small_scene));
+  EXPECT_EQ(there["error"]["mean"], last["error"]);
+  EXPECT_EQ(there["control_effort"], last["control_effort"]);
+}
+
+TEST_F(Studio, SaysHowMuchOfAFilmIsMade) {
+  EXPECT_EQ(json_of(get("/api/progress?page=a")), (Json{{"progress", 0}}));
+  EXPECT_EQ(status_of(get("/api/progress?film=a")), 400);
+  EXPECT_EQ(status_of(post("/api/progress?page=a", small_scene)), 405);
 }
 
 TEST_F(Studio, FramesReachArrivalAndFlyOn) {
@@ -288,6 +372,17 @@ TEST_F(Studio, RefusesWithTheMessagesOfTheCommandLine) {
   EXPECT_NE(refused("/api/optimize?frames=1e9", small_scene, 400), "");
   EXPECT_NE(refused("/api/optimize?after=1e9&frames=3", small_scene, 400), "");
   EXPECT_NE(refused("/api/optimize?sudo=1", small_scene, 400), "");
+  EXPECT_EQ(refused("/api/optimize?refine=yes", small_scene, 400),
+            "refine: \"yes\" is not one of 0, 1");
+  EXPECT_EQ(refused("/api/optimize?warm_start=-1", small_scene, 400), "warm_start: -1 is not >= 0");
+  EXPECT_EQ(refused("/api/optimize?warm_start=1&optimizer=steepest-descent", small_scene, 400),
+            "warm_start: is not for the optimizer steepest-descent");
+  Json fine = Json::parse(small_scene);
+  fine["particles"] = 2000;
+  fine["cloth"]["hinge_stiffness"] = 0;
+  EXPECT_NE(refused("/api/simulate?alpha=0.01&refine=1", fine.dump(), 400)
+                .find("is not few enough to aim off in the studio"),
+            std::string::npos);
   EXPECT_NE(refused("/api/nothing", small_scene, 404), "");
 }
 
@@ -402,6 +497,9 @@ TEST_F(Studio, AnswersEveryHostileRequestAndKeepsItsMemory) {
                                      "/api/result",
                                      "/api/scene",
                                      "/api/optimize?backend=native&frames=3",
+                                     "/api/optimize?warm_start=0.1&refine=1",
+                                     "/api/trade_off",
+                                     "/api/progress?page=a",
                                      "/api/about",
                                      "/"};
     const std::string path = paths[static_cast<std::size_t>(below(static_cast<int>(paths.size())))];

@@ -115,6 +115,7 @@ void write_film(const std::vector<Flight>& flights, const FlightFigure& figure,
           svg.resize(length, ' ');
           std::fwrite(svg.data(), 1, length, ffmpeg);
           show_progress(fmt::format("{}: frame {} of {}", options.out, i + 1, arrived + 1));
+          if (options.progress) options.progress(static_cast<double>(i + 1) / (arrived + 1));
         }
       },
       out);

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include <nuno/rollout.h>
+#include <nuno/trade_off.h>
 
 #include <algorithm>
 #include <array>
@@ -42,11 +43,19 @@ constexpr const char* scene_name = "scene.json";
 // A page waits for its answer: more than this for one rollout belongs on the command line.
 constexpr double most_particle_steps_native = 5e7;
 constexpr double most_particle_steps_box2d = 2e7;
+constexpr double most_work_of_a_tangent = 5e8;  // particle-steps over all 2N directions
+constexpr double most_work_of_a_trade_off_native = 1e9;
+constexpr double most_work_of_a_trade_off_box2d = 5e7;
 constexpr Index most_frames = 2000;
 constexpr double most_points_in_frames = 2e6;
 constexpr double most_flights_after = 10;  // seconds after arrival, in arrival times
 constexpr double longest_film = 10;        // seconds
 constexpr std::size_t longest_page = 64;
+
+// A search for an eye that watches the shape change: a thousandth of the error more or less is
+// below what it sees.
+constexpr GlobalSearchOptions while_changing = {
+    .rounds = 3, .gain_tolerance = 1e-3, .error_tolerance = 1e-3};
 
 std::string dump(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -79,6 +88,8 @@ struct Options {
   std::string optimizer{optimizer_names.front()};
   double alpha = 0;
   bool has_alpha = false;
+  std::optional<double> warm_start;
+  bool refine = false;
   Index frames = 0;
   double after = 0;
 };
@@ -125,6 +136,10 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
     } else if (name == "alpha") {
       options.alpha = number(name, text);
       options.has_alpha = true;
+    } else if (name == "warm_start") {
+      options.warm_start = number(name, text);
+    } else if (name == "refine") {
+      options.refine = word(name, text, std::array{"0", "1"}) == "1";
     } else if (name == "frames") {
       const double frames = number(name, text);
       if (frames != std::floor(frames) || frames > static_cast<double>(most_frames)) {
@@ -136,7 +151,16 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
       options.after = number(name, text);
     }
   }
+  if (options.warm_start && options.optimizer != optimizer_names.front()) {
+    throw InputError(fmt::format("warm_start: is not for the optimizer {}", options.optimizer));
+  }
   return options;
+}
+
+/// What one rollout takes, in particle-steps.
+double work_of(const Backend& backend) {
+  return static_cast<double>(backend.steps()) *
+         static_cast<double>(backend.problem().chain.particles());
 }
 
 /// Throws InputError for a scene that would keep the page waiting for minutes.
@@ -144,11 +168,17 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
   const double particles = static_cast<double>(file.scene.particles);
   const double most =
       backend.name() == "native" ? most_particle_steps_native : most_particle_steps_box2d;
-  if (static_cast<double>(backend.steps()) * particles > most) {
+  if (work_of(backend) > most) {
     throw InputError(
         fmt::format("{}: /particles: {} is not few enough for the studio: with {} steps on {}, "
                     "this is for nuno optimize",
                     file.path, file.scene.particles, backend.steps(), backend.name()));
+  }
+  if (options.refine && 2 * particles * work_of(backend) > most_work_of_a_tangent) {
+    throw InputError(
+        fmt::format("{}: /particles: {} is not few enough to aim off in the studio: this is for "
+                    "nuno optimize --refine",
+                    file.path, file.scene.particles));
   }
   if (options.after > most_flights_after * file.scene.arrival_time) {
     throw InputError(fmt::format("after: {} is not <= {}, {} arrival times", options.after,
@@ -193,12 +223,32 @@ Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
           {"history", history}};
 }
 
+Json to_json(const RefineSummary& refinement) {
+  return {{"status", refinement.converged ? "converged" : "nearest"},
+          {"error_before", refinement.error_before},
+          {"largest_offset", refinement.aim_offset.colwise().norm().maxCoeff()},
+          {"rollouts", refinement.rollouts},
+          {"tangents", refinement.tangents},
+          {"seconds", refinement.seconds},
+          {"reason", refinement.reason}};
+}
+
+/// A finished throw: which engine, which gain, and how it was found.
+struct Throw {
+  SceneFile file;
+  std::unique_ptr<Backend> backend;
+  std::optional<OptimizeSummary> found;
+  std::optional<RefineSummary> refined;
+  Rollout flight;
+};
+
 /// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.
-std::string drawable(const SceneFile& file, const Backend& backend, const Rollout& flight,
-                     const std::optional<Json>& optimization, const Flight& frames,
+std::string drawable(const Throw& done, const std::string& optimizer, const Flight& frames,
                      Clock::time_point start) {
+  const Backend& backend = *done.backend;
+  const Rollout& flight = done.flight;
   const Problem& problem = backend.problem();
-  Json head = {{"scene", file.scene.name},
+  Json head = {{"scene", done.file.scene.name},
                {"backend", backend.name()},
                {"status", "ok"},
                {"alpha", flight.gain},
@@ -214,7 +264,8 @@ std::string drawable(const SceneFile& file, const Backend& backend, const Rollou
                {"control_effort", flight.control_effort},
                {"effort_unit", effort_unit(problem)},
                {"max_strain", flight.max_strain}};
-  if (optimization) head["optimization"] = *optimization;
+  if (done.found) head["optimization"] = to_json(*done.found, optimizer);
+  if (done.refined) head["refinement"] = to_json(*done.refined);
   std::string text = dump(head);
   text.pop_back();  // the brace: the shapes follow
   text += ",\"initial\":";
@@ -236,30 +287,37 @@ Answer diverged_answer(const SceneFile& file, const Backend& backend, const Roll
   return refusal(422, divergence_message(file.path, backend, flight));
 }
 
-/// A finished throw: which engine, which gain, and how it was found.
-struct Throw {
-  SceneFile file;
-  std::unique_ptr<Backend> backend;
-  std::optional<OptimizeSummary> found;
-  Rollout flight;
-};
+OptimizeSummary search(const Options& options, const Objective& objective) {
+  if (!options.warm_start) return run_optimizer(options.optimizer, objective);
+  GlobalSearchOptions quick = while_changing;
+  quick.warm_start = options.warm_start;
+  return global_search(objective, quick);
+}
 
 /// As `nuno optimize` and `nuno simulate` do it, with their functions and options.
 Throw run(const std::string& body, const Options& options, bool optimizes, const Turn& turn,
           bool keeps_frames) {
   Throw result;
   result.file = parse_scene_file(body, scene_name);
-  const SceneFile& file = result.file;
-  result.backend = optimizes ? make_backend(options.backend, file)
-                             : make_backend_for_gain(options.backend, file, options.alpha);
+  SceneFile& file = result.file;
+  const auto made_ready = [&] {
+    return optimizes ? make_backend(options.backend, file)
+                     : make_backend_for_gain(options.backend, file, options.alpha);
+  };
+  result.backend = made_ready();
   require_quick(file, *result.backend, options);
   double gain = options.alpha;
   if (optimizes) {
-    result.found = run_optimizer(options.optimizer, cancellable(*result.backend, turn));
+    result.found = search(options, cancellable(*result.backend, turn));
     gain = result.found->gain;
   }
   turn.check();
   if (keeps_frames) require_few_frames(file);
+  if (options.refine) {
+    result.refined = aim_off(options.backend, file, gain, [&] { turn.check(); });
+    file.problem.aim_offset = result.refined->aim_offset;
+    result.backend = made_ready();
+  }
   result.flight = rollout(*result.backend, gain,
                           {.frames_per_second = keeps_frames ? file.scene.frames_per_second : 0});
   return result;
@@ -274,9 +332,7 @@ Answer throw_answer(const std::string& body, const Options& options, bool optimi
   if (options.frames > 0) {
     frames = fly(*done.backend, done.flight.gain, options.frames, options.after, turn);
   }
-  std::optional<Json> optimization;
-  if (done.found) optimization = to_json(*done.found, options.optimizer);
-  return {.body = drawable(done.file, *done.backend, done.flight, optimization, frames, start)};
+  return {.body = drawable(done, options.optimizer, frames, start)};
 }
 
 /// The file that the command line's --out writes: simulate's where a gain is given.
@@ -285,6 +341,17 @@ Answer result_answer(const std::string& body, const Options& options, const Turn
   if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
   std::optional<Optimization> optimization;
   if (done.found) optimization = Optimization{options.optimizer, *done.found};
+  if (done.refined) {
+    // A gain that was given has no search, but how it was aimed belongs to the result.
+    if (!optimization) {
+      optimization = Optimization{"none",
+                                  {.gain = options.alpha,
+                                   .error = done.refined->error_before,
+                                   .history = {},
+                                   .reason = {}}};
+    }
+    optimization->refinement = done.refined;
+  }
   return {.body = printed([&](std::FILE* file) {
             write_result(file, done.file.scene.name, *done.backend, done.flight,
                          bounded_sensitivity(*done.backend, done.flight), optimization);
@@ -347,11 +414,35 @@ Answer film_answer(const std::string& body, const Options& options, const Turn& 
     std::fwrite(result.body.data(), 1, result.body.size(), file);
   });
   turn.check();
-  render({.results = {result_path}, .out = film});
+  render({.results = {result_path}, .out = film, .progress = [&](double share) {
+            turn.check();
+            turn.report(share);
+          }});
   std::ifstream file(film, std::ios::binary);
   return {.type = "video/mp4",
           .body = {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()},
           .file_name = "film.mp4"};
+}
+
+/// What error costs in effort. A scene whose rollouts take long gets fewer points.
+Answer trade_off_answer(const std::string& body, const Options& options, const Turn& turn) {
+  const SceneFile file = parse_scene_file(body, scene_name);
+  const auto backend = make_backend(options.backend, file);
+  require_quick(file, *backend, options);
+  turn.check();
+  const double most = backend->name() == "native" ? most_work_of_a_trade_off_native
+                                                  : most_work_of_a_trade_off_box2d;
+  const double count = std::clamp(most / work_of(*backend), 8.0, 64.0);
+  Json points = Json::array();
+  for (const TradeOffPoint& point : trade_off(*backend, static_cast<Index>(count))) {
+    points.push_back(
+        {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
+  }
+  return {.body = dump({{"scene", file.scene.name},
+                        {"backend", backend->name()},
+                        {"cloth_length", backend->problem().chain.length},
+                        {"effort_unit", effort_unit(backend->problem())},
+                        {"trade_off", points}})};
 }
 
 Answer scene_answer(const std::string& body) {
@@ -370,12 +461,18 @@ Json about() {
           {"defaults", defaults}};
 }
 
-const std::set<std::string_view> of_optimize = {"page", "backend", "optimizer", "frames", "after"};
-const std::set<std::string_view> of_simulate = {"page", "backend", "alpha", "frames", "after"};
-const std::set<std::string_view> of_result = {"page", "backend", "optimizer", "alpha"};
+using Names = std::set<std::string_view>;
 
-constexpr std::array<std::string_view, 6> posts = {"/api/optimize", "/api/simulate", "/api/result",
-                                                   "/api/scene",    "/api/report",   "/api/film"};
+const Names of_optimize = {"page",   "backend", "optimizer", "warm_start",
+                           "refine", "frames",  "after"};
+const Names of_simulate = {"page", "backend", "alpha", "refine", "frames", "after"};
+const Names of_result = {"page", "backend", "optimizer", "alpha", "refine"};
+const Names of_trade_off = {"page", "backend"};
+const Names of_report = {"page"};
+
+constexpr std::array<std::string_view, 7> posts = {
+    "/api/optimize", "/api/simulate",  "/api/result", "/api/scene",
+    "/api/report",   "/api/trade_off", "/api/film"};
 
 }  // namespace
 
@@ -388,6 +485,10 @@ Answer Api::get(const std::string& path, const Parameters& parameters) try {
     read_options(parameters, {});
     return {.body = dump(about())};
   }
+  if (path == "/api/progress") {
+    const Options options = read_options(parameters, {"page"});
+    return {.body = dump({{"progress", turns_.progress(options.page)}})};
+  }
   if (std::ranges::find(posts, path) != posts.end()) {
     return refusal(405, path + ": takes POST with a scene");
   }
@@ -398,31 +499,35 @@ Answer Api::get(const std::string& path, const Parameters& parameters) try {
 
 Answer Api::post(const std::string& path, const Parameters& parameters, const std::string& body) {
   Turn turn;
-  std::string page;
+  Options options;
   Answer answer;
+  const auto begin = [&](const Names& known) {
+    options = read_options(parameters, known);
+    turn = turns_.begin(options.page);
+  };
   try {
     if (path == "/api/scene") {
-      read_options(parameters, {});
+      begin({});
       answer = scene_answer(body);
-    } else if (path == "/api/optimize" || path == "/api/simulate") {
-      const bool optimizes = path == "/api/optimize";
-      const Options options = read_options(parameters, optimizes ? of_optimize : of_simulate);
-      page = options.page;
-      turn = turns_.begin(page);
-      answer = throw_answer(body, options, optimizes, turn);
+    } else if (path == "/api/optimize") {
+      begin(of_optimize);
+      answer = throw_answer(body, options, true, turn);
+    } else if (path == "/api/simulate") {
+      begin(of_simulate);
+      answer = throw_answer(body, options, false, turn);
+    } else if (path == "/api/trade_off") {
+      begin(of_trade_off);
+      answer = trade_off_answer(body, options, turn);
     } else if (path == "/api/result") {
-      const Options options = read_options(parameters, of_result);
-      page = options.page;
-      turn = turns_.begin(page);
+      begin(of_result);
       answer = result_answer(body, options, turn);
     } else if (path == "/api/film") {
-      const Options options = read_options(parameters, of_result);
-      page = options.page;
-      turn = turns_.begin(page);
+      begin(of_result);
       answer = film_answer(body, options, turn);
     } else if (path == "/api/report") {
-      answer = report_answer(body, read_options(parameters, {"page", "backend", "alpha"}));
-    } else if (path == "/" || path == "/api/about") {
+      begin(of_report);
+      answer = report_answer(body, options);
+    } else if (path == "/" || path == "/api/about" || path == "/api/progress") {
       answer = refusal(405, path + ": takes GET");
     } else {
       answer = refusal(404, "there is no such page");
@@ -436,7 +541,7 @@ Answer Api::post(const std::string& path, const Parameters& parameters, const st
   } catch (const std::bad_alloc&) {
     answer = refusal(413, "the scene needs more memory than there is");
   }
-  turns_.end(page, turn);
+  turns_.end(options.page, turn);
   return answer;
 }
 

@@ -23,18 +23,24 @@ std::size_t gains_of_portion(const Backend& backend) {
 Turn Turns::begin(const std::string& page) {
   Turn turn;
   if (page.empty()) return turn;
-  turn.over_ = std::make_shared<std::atomic<bool>>(false);
+  turn.state_ = std::make_shared<Turn::State>();
   const std::scoped_lock lock(mutex_);
   auto& running = running_[page];
-  if (running) *running = true;
-  running = turn.over_;
+  if (running) running->over = true;
+  running = turn.state_;
   return turn;
 }
 
 void Turns::end(const std::string& page, const Turn& turn) {
   const std::scoped_lock lock(mutex_);
   const auto running = running_.find(page);
-  if (running != running_.end() && running->second == turn.over_) running_.erase(running);
+  if (running != running_.end() && running->second == turn.state_) running_.erase(running);
+}
+
+double Turns::progress(const std::string& page) {
+  const std::scoped_lock lock(mutex_);
+  const auto running = running_.find(page);
+  return running == running_.end() ? 0 : running->second->progress.load();
 }
 
 Objective cancellable(const Backend& backend, const Turn& turn) {

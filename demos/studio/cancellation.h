@@ -19,12 +19,20 @@ class Turn {
  public:
   /// Throws Cancelled if the turn is over.
   void check() const {
-    if (over_ && *over_) throw Cancelled();
+    if (state_ && state_->over) throw Cancelled();
+  }
+  /// How much of the work is done, 0 … 1, for who asks meanwhile.
+  void report(double share) const {
+    if (state_) state_->progress = share;
   }
 
  private:
   friend class Turns;
-  std::shared_ptr<std::atomic<bool>> over_;
+  struct State {
+    std::atomic<bool> over = false;
+    std::atomic<double> progress = 0;
+  };
+  std::shared_ptr<State> state_;
 };
 
 /// Who works for which page. Shared by all threads.
@@ -33,10 +41,12 @@ class Turns {
   /// Ends the turn that `page` has and begins a new one; an empty `page` never ends another's.
   Turn begin(const std::string& page);
   void end(const std::string& page, const Turn& turn);
+  /// Of the turn that `page` has; 0 without one.
+  double progress(const std::string& page);
 
  private:
   std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<std::atomic<bool>>> running_;
+  std::map<std::string, std::shared_ptr<Turn::State>> running_;
 };
 
 /// The objective of `backend`, in portions of a fraction of a second; between them it throws

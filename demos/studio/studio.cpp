@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -20,13 +21,24 @@
 #include "../output.h"
 #include "api.h"
 #include "embedded/chart_js.h"
+#include "embedded/charts_js.h"
 #include "embedded/client_js.h"
 #include "embedded/editor_js.h"
+#include "embedded/fields_js.h"
+#include "embedded/files_js.h"
 #include "embedded/geometry_js.h"
 #include "embedded/index_html.h"
+#include "embedded/keyboard_js.h"
+#include "embedded/latency_js.h"
+#include "embedded/numbers_js.h"
+#include "embedded/player_js.h"
 #include "embedded/scene_js.h"
+#include "embedded/scores_js.h"
+#include "embedded/stage_js.h"
+#include "embedded/state_js.h"
 #include "embedded/studio_css.h"
 #include "embedded/studio_js.h"
+#include "embedded/throws_js.h"
 #include "embedded/view_js.h"
 
 // Last: the system's <resolv.h>, which it includes, defines names that Eigen uses.
@@ -49,17 +61,28 @@ struct PageFile {
 };
 
 // A function: constants of other source files are made before main, in an unknown order.
-std::array<PageFile, 9> page_files() {
+std::array<PageFile, 20> page_files() {
   using namespace embedded;
   constexpr std::string_view js = "text/javascript; charset=utf-8";
   return {{{"/", "text/html; charset=utf-8", index_html},
            {"/studio.css", "text/css; charset=utf-8", studio_css},
-           {"/studio.js", js, studio_js},
            {"/chart.js", js, chart_js},
+           {"/charts.js", js, charts_js},
            {"/client.js", js, client_js},
            {"/editor.js", js, editor_js},
+           {"/fields.js", js, fields_js},
+           {"/files.js", js, files_js},
            {"/geometry.js", js, geometry_js},
+           {"/keyboard.js", js, keyboard_js},
+           {"/latency.js", js, latency_js},
+           {"/numbers.js", js, numbers_js},
+           {"/player.js", js, player_js},
            {"/scene.js", js, scene_js},
+           {"/scores.js", js, scores_js},
+           {"/stage.js", js, stage_js},
+           {"/state.js", js, state_js},
+           {"/studio.js", js, studio_js},
+           {"/throws.js", js, throws_js},
            {"/view.js", js, view_js}}};
 }
 
@@ -92,9 +115,18 @@ std::optional<Answer> refused(const httplib::Request& request, int port) {
   return std::nullopt;
 }
 
-void send(httplib::Response& response, const Answer& answer) {
+/// Not with set_content: httplib would pack the answer as tightly as it can, which takes forty
+/// milliseconds for a flight and saves nothing within one machine.
+void send(httplib::Response& response, Answer answer) {
   response.status = answer.status;
-  response.set_content(answer.body, answer.type);
+  const std::size_t size = answer.body.size();
+  response.set_content_provider(
+      size, answer.type,
+      [body = std::move(answer.body)](std::size_t offset, std::size_t length, auto& sink) {
+        // A client may ask for a range that there is not.
+        if (offset >= body.size()) return false;
+        return sink.write(body.data() + offset, std::min(length, body.size() - offset));
+      });
   if (!answer.file_name.empty()) {
     response.set_header("Content-Disposition",
                         fmt::format("attachment; filename=\"{}\"", answer.file_name));
@@ -184,7 +216,7 @@ void set_routes(httplib::Server& server, studio::Api& api, int port) {
 
   // Answers that httplib gives by itself, to what is no HTTP.
   server.set_error_handler([](const httplib::Request&, httplib::Response& response) {
-    if (response.body.empty()) {
+    if (!response.has_header("Content-Type")) {
       send(response, refusal(response.status, "the request is not one that the studio takes"));
     }
   });

@@ -1,8 +1,8 @@
 // Requests to the program that serves the page, see API.md.
 
-export const page_id = Math.random().toString(36).slice(2, 10);
+const page_id = Math.random().toString(36).slice(2, 10);
 
-export class Refused extends Error {
+class Refused extends Error {
   constructor(status, message) {
     super(message);
     this.status = status;
@@ -26,11 +26,19 @@ export async function ask(path, parameters, body) {
   return response;
 }
 
+// How much of a page's film is made, 0 … 1.
+export async function film_progress(page) {
+  const response = await fetch(`/api/progress?page=${page}`);
+  return response.ok ? (await response.json()).progress : 0;
+}
+
 // One kind of work: at most one request under way and one that waits; the newest wins. An urgent one
 // does not wait: it takes the place of the one under way, whose work the program gives up.
 export class Channel {
-  constructor(name) {
+  // `idle` is called whenever work has ended.
+  constructor(name, idle) {
     this.page = `${page_id}-${name}`;
+    this.idle = idle;
     this.running = 0;
     this.newest = 0;
     this.waiting = null;
@@ -52,28 +60,28 @@ export class Channel {
 
   async start(job) {
     this.running++;
+    let again = false;
     try {
       const result = await job.work(this.page);
       if (!this.overtaken(job)) job.done(result);
     } catch (error) {
+      // The newest gives way to nothing: an older request came later to the program than it did.
+      again = error?.status === 409 && job.number === this.newest;
       if (error?.status !== 409 && !this.overtaken(job)) job.failed(error);
     } finally {
       this.running--;
-      if (this.running === 0 && this.waiting) {
+      if (again) {
+        this.start(job);
+      } else if (this.running === 0 && this.waiting) {
         const next = this.waiting;
         this.waiting = null;
         this.start(next);
       }
+      this.idle();
     }
   }
 
   // A later answer is drawn already or an urgent job is on its way; one that only waits does not
   // make an answer stale: while the pointer moves, there is always one that waits.
   overtaken(job) { return this.newest !== job.number && !(this.waiting?.number === this.newest); }
-
-  // Drops what waits and ignores what is under way.
-  drop() {
-    this.waiting = null;
-    this.newest++;
-  }
 }

@@ -5,7 +5,7 @@ import * as geometry from './geometry.js';
 const pen_reach = 12, finger_reach = 24; // pixels
 
 export class Editor {
-  // app: {doc, selected, tool, vertex, changed(live), select(name), set_tool(name), redraw()}
+  // app: {doc, selected, tool, vertex, changed(live, time), drawn(), select(name), redraw()}
   constructor(canvas, view, app) {
     Object.assign(this, { canvas, view, app });
     this.pointers = new Map();
@@ -26,20 +26,21 @@ export class Editor {
     const box = this.canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
   }
-  world(event) { return this.view.to_world(...this.place(event)); }
+  // A gesture stays in the view in which it began.
+  in_view(event) { return this.view.in_view(this.place(event), this.gesture ? this.gesture_view : undefined); }
+  world(event) { return this.view.to_world(this.in_view(event)); }
   reach(event) { return event.pointerType === 'touch' ? finger_reach : pen_reach; }
 
   // What a pointer at this place would take.
   target_at(event) {
-    const [px, py] = this.place(event);
-    const x = px % this.view.view_width;
+    const [x, y] = this.in_view(event);
     const reach = this.reach(event);
-    const world = this.view.to_world(px, py);
+    const world = this.world(event);
     const scene = this.app.doc.scene;
     const far = (name) => geometry.distance_to_line(scene[name], world) * this.view.camera.scale;
     if (this.app.tool === 'move') {
       for (const [name, [hx, hy]] of Object.entries(this.view.handle_places(this.line))) {
-        if (Math.hypot(hx - x, hy - py) <= reach) return { kind: name === 'turn' ? 'turn' : 'scale', handle: name };
+        if (Math.hypot(hx - x, hy - y) <= reach) return { kind: name === 'turn' ? 'turn' : 'scale', handle: name };
       }
     }
     const other = this.app.selected === 'target' ? 'initial' : 'target';
@@ -49,7 +50,7 @@ export class Editor {
     const frame = (name) => this.view.frame(scene[name]);
     for (const name of [this.app.selected, other]) {
       const { left, right, top, bottom } = frame(name);
-      if (x >= left && x <= right && py >= top && py <= bottom) return { kind: 'move', name };
+      if (x >= left && x <= right && y >= top && y <= bottom) return { kind: 'move', name };
     }
     return null;
   }
@@ -62,6 +63,7 @@ export class Editor {
     this.pointers.set(event.pointerId, this.place(event));
     if (this.pointers.size === 2) return this.begin_pinch();
     if (this.pointers.size > 2) return;
+    this.gesture_view = this.view.view_at(this.place(event));
     const at = this.world(event);
     const { tool } = this.app;
     if (tool === 'pan' || this.space || event.button === 1) {
@@ -80,7 +82,7 @@ export class Editor {
       } else if (hit.kind === 'scale') {
         const { left, right, top, bottom } = this.view.frame(this.line);
         const opposite = { nw: [right, bottom], ne: [left, bottom], sw: [right, top], se: [left, top] }[hit.handle];
-        this.gesture = { kind: 'scale', about: this.view.to_world(...opposite), from: at, line: this.line };
+        this.gesture = { kind: 'scale', about: this.view.to_world(opposite), from: at, line: this.line };
       } else if (hit.kind === 'turn') {
         this.gesture = { kind: 'turn', about: geometry.centroid(this.line), from: at, line: this.line };
       } else {
@@ -179,7 +181,7 @@ export class Editor {
     const now = middle(a, b), before = middle(c, d);
     this.view.pan(now[0] - before[0], now[1] - before[1]);
     const spread = Math.hypot(a[0] - b[0], a[1] - b[1]) / Math.max(1, Math.hypot(c[0] - d[0], c[1] - d[1]));
-    this.view.zoom(spread, now[0] % this.view.view_width, now[1]);
+    this.view.zoom(spread, this.view.in_view(now));
     this.gesture.last = [a, b];
     this.app.redraw();
   }
@@ -200,9 +202,8 @@ export class Editor {
 
   wheel(event) {
     event.preventDefault();
-    const [px, py] = this.place(event);
     const step = event.deltaMode === 1 ? 20 * event.deltaY : event.deltaY;
-    this.view.zoom(Math.exp(-Math.max(-300, Math.min(300, step)) * 0.0015), px % this.view.view_width, py);
+    this.view.zoom(Math.exp(-Math.max(-300, Math.min(300, step)) * 0.0015), this.in_view(event));
     this.app.redraw();
   }
 

@@ -5,16 +5,18 @@ import { bounds } from './geometry.js';
 const handle_size = 5;
 const force_pixels = 34; // of an arrow as large as a particle's weight
 const longest_force = 160; // pixels
+const narrow = 640; // pixels: a phone
 
 export class View {
   constructor(canvas) {
     this.canvas = canvas;
     this.camera = { x: 1.5, y: 1.2, scale: 200 }; // middle [m], pixels per metre
-    this.views = 1; // side by side
-    this.resize();
+    this.resize(1);
   }
 
-  resize() {
+  // `views`: how many stand side by side or, where that is too narrow, one above the other.
+  resize(views = this.views) {
+    this.views = views;
     const ratio = devicePixelRatio || 1;
     this.width = this.canvas.clientWidth;
     this.height = this.canvas.clientHeight;
@@ -24,31 +26,42 @@ export class View {
     this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
   }
 
-  get view_width() { return this.width / this.views; }
+  get narrow() { return this.width < narrow; }
+  get stacked() { return this.views > 1 && this.narrow; }
+  get view_width() { return this.stacked ? this.width : this.width / this.views; }
+  get view_height() { return this.stacked ? this.height / this.views : this.height; }
 
   // Where the things below the toolbars and above the hint have their room.
   get room() {
-    const narrow = this.width < 640;
+    const { narrow } = this;
     return { left: narrow ? 60 : 84, right: narrow ? 30 : 36, top: narrow ? 84 : 92, bottom: 84 };
   }
 
   to_screen([x, y]) {
     return [this.view_width / 2 + (x - this.camera.x) * this.camera.scale,
-            this.height / 2 - (y - this.camera.y) * this.camera.scale];
+            this.view_height / 2 - (y - this.camera.y) * this.camera.scale];
   }
-  to_world(px, py) {
-    const x = px % this.view_width;
+  // The view at a place of the canvas; one beyond the edge counts to the view beside it.
+  view_at([px, py]) {
+    return Math.max(0, Math.min(this.views - 1, Math.floor(this.stacked ? py / this.view_height : px / this.view_width)));
+  }
+  // A place of the canvas as one of a view.
+  in_view(place, view = this.view_at(place)) {
+    const [px, py] = place;
+    return this.stacked ? [px, py - view * this.view_height] : [px - view * this.view_width, py];
+  }
+  to_world([x, y]) {
     return [this.camera.x + (x - this.view_width / 2) / this.camera.scale,
-            this.camera.y - (py - this.height / 2) / this.camera.scale];
+            this.camera.y - (y - this.view_height / 2) / this.camera.scale];
   }
   pan(dx, dy) {
     this.camera.x -= dx / this.camera.scale;
     this.camera.y += dy / this.camera.scale;
   }
-  zoom(factor, px = this.view_width / 2, py = this.height / 2) {
-    const before = this.to_world(px, py);
+  zoom(factor, place = [this.view_width / 2, this.view_height / 2]) {
+    const before = this.to_world(place);
     this.camera.scale = Math.max(1e-3, Math.min(1e7, this.camera.scale * factor));
-    const after = this.to_world(px, py);
+    const after = this.to_world(place);
     this.camera.x += before[0] - after[0];
     this.camera.y += before[1] - after[1];
   }
@@ -56,7 +69,7 @@ export class View {
     const box = bounds(...lines.filter((line) => line.length));
     if (!Number.isFinite(box.left)) return;
     const { left, right, top, bottom } = this.room;
-    const w = Math.max(80, this.view_width - left - right), h = Math.max(80, this.height - top - bottom);
+    const w = Math.max(80, this.view_width - left - right), h = Math.max(80, this.view_height - top - bottom);
     const wide = Math.max(box.right - box.left, 1e-9), high = Math.max(box.top - box.bottom, 1e-9);
     this.camera.scale = Math.min(w / wide, h / high);
     this.camera.x = (box.left + box.right) / 2 + (right - left) / 2 / this.camera.scale;
@@ -64,16 +77,15 @@ export class View {
   }
 
   // what: {views: [{cloths: [{color, shape, ghosts, path, forces, effort_unit}]}], initial, target,
-  //        fitted, selected, tool, vertex, stroke, label, flying}
+  //        fitted, selected, tool, vertex, stroke, forces}
   draw(what, colors) {
-    this.views = what.views.length;
     const ctx = this.context;
     ctx.clearRect(0, 0, this.width, this.height);
     what.views.forEach((view, i) => {
       ctx.save();
-      ctx.translate(i * this.view_width, 0);
+      ctx.translate(this.stacked ? 0 : i * this.view_width, this.stacked ? i * this.view_height : 0);
       ctx.beginPath();
-      ctx.rect(0, 0, this.view_width, this.height);
+      ctx.rect(0, 0, this.view_width, this.view_height);
       ctx.clip();
       this.grid(colors);
       this.shapes(what, view, colors);
@@ -81,7 +93,8 @@ export class View {
         ctx.font = '600 12px system-ui, sans-serif';
         ctx.fillStyle = view.cloths[0]?.color ?? colors.quiet;
         ctx.textAlign = 'center';
-        ctx.fillText(view.title, this.view_width / 2, this.height - 62);
+        ctx.textBaseline = 'alphabetic';
+        ctx.fillText(view.title, this.view_width / 2, this.view_height - 62);
       }
       ctx.restore();
     });
@@ -98,7 +111,8 @@ export class View {
     }
     if (this.views > 1) {
       ctx.fillStyle = colors.line;
-      ctx.fillRect(Math.round(this.view_width), 0, 1, this.height);
+      if (this.stacked) ctx.fillRect(0, Math.round(this.view_height), this.width, 1);
+      else ctx.fillRect(Math.round(this.view_width), 0, 1, this.height);
     }
   }
 
@@ -110,8 +124,8 @@ export class View {
       step = 10 ** Math.floor(Math.log10(70 / this.camera.scale)) * times;
     }
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-    const [x0, y1] = this.to_world(0, 0);
-    const x1 = x0 + this.view_width / this.camera.scale, y0 = y1 - this.height / this.camera.scale;
+    const [x0, y1] = this.to_world([0, 0]);
+    const x1 = x0 + this.view_width / this.camera.scale, y0 = y1 - this.view_height / this.camera.scale;
     ctx.lineWidth = 1;
     ctx.font = '10.5px system-ui, sans-serif';
     const name = (value) => (Math.abs(value) < step / 2 ? '0' : value.toFixed(digits).replace('-', '−'));
@@ -120,12 +134,12 @@ export class View {
       ctx.strokeStyle = i === 0 ? colors.axis : colors.grid;
       ctx.beginPath();
       ctx.moveTo(at, 0);
-      ctx.lineTo(at, this.height);
+      ctx.lineTo(at, this.view_height);
       ctx.stroke();
       ctx.fillStyle = colors.faint;
       ctx.textAlign = 'left';
       ctx.textBaseline = 'bottom';
-      if (at > 30 && at < this.view_width - 34) ctx.fillText(name(i * step) + ' m', at + 3, this.height - 3);
+      if (at > 30 && at < this.view_width - 34) ctx.fillText(name(i * step) + ' m', at + 3, this.view_height - 3);
     }
     for (let i = Math.ceil(y0 / step); i * step <= y1; i++) {
       const at = Math.round(this.to_screen([0, i * step])[1]) + 0.5;
@@ -137,7 +151,7 @@ export class View {
       ctx.fillStyle = colors.faint;
       ctx.textAlign = 'right';
       ctx.textBaseline = 'bottom';
-      if (at > 100 && at < this.height - 30) ctx.fillText(name(i * step) + ' m', this.view_width - 4, at - 2);
+      if (at > 100 && at < this.view_height - 30) ctx.fillText(name(i * step) + ' m', this.view_width - 4, at - 2);
     }
   }
 

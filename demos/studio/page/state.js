@@ -1,0 +1,44 @@
+// What the page knows: the scene, what is shown of it, and the answers so far.
+
+export const app = {
+  doc: null, // the scene and its past, see scene.js
+  selected: 'target',
+  tool: 'move',
+  vertex: null,
+  engine: 'native', // native, box2d, over, side
+  own_gain: false, // Box2D searches for itself
+  aims_off: false, // until the cloth is on the target
+  alpha: null, // a gain tried by hand; null: the best
+  // By engine: {flight, key, stale, best, best_throw, search, curve, trade_off}; a key is the text of the scene
+  // that an answer is of.
+  results: {},
+  time: null, // of the flight [s]; null: the arrival
+  playing: false,
+  loop: true,
+  after: true,
+  ghosts: true,
+  forces: false,
+  speed: 1,
+};
+
+export const engines = ['native', 'box2d'];
+export const engine_names = { native: 'native', box2d: 'Box2D' };
+
+export const scene = () => app.doc.scene;
+export const shows = (engine) => app.engine === engine || app.engine === 'over' || app.engine === 'side';
+
+const flight_after = 0.6; // of the arrival time, how long the cloth flies on
+export const time_after = () => flight_after * scene().arrival_time;
+export const end_time = () => scene().arrival_time + (app.after ? time_after() : 0);
+export const now = () => app.time ?? scene().arrival_time;
+
+// What control effort is measured in.
+export const effort_unit = () => (scene().gravity > 0 ? '× weight' : '× m·L/t₀²');
+
+// Why the cloth cannot be aimed off; empty if it can.
+export function no_aiming() {
+  if (app.engine !== 'native') return 'It is for the native engine alone.';
+  if (scene().reference !== 'morph') return 'It needs a control that follows a motion (morph).';
+  if (!(scene().damping_ratio > 0)) return 'It needs a control with damping, ζ > 0.';
+  return '';
+}
