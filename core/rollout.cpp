@@ -72,20 +72,27 @@ double effort_unit(const Problem& problem) {
                                     : chain.length / (problem.arrival_time * problem.arrival_time));
 }
 
-Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options) {
-  return rollout(backend, gain, options, backend.problem().chain.initial);
+Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options) {
+  return rollout(backend, gains, options, backend.problem().chain.initial);
 }
 
-Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options,
+Gains gains_of(const Rollout& flight) {
+  Gains gains(flight.gain);
+  gains.low = flight.low_gains;
+  return gains;
+}
+
+Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options,
                 const Points& initial) {
-  assert(gain >= 0);
+  assert(std::ranges::min(gains.groups()) >= 0);
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
-  const double damping = shape_damping(problem.damping_ratio, gain, problem.chain.particle_mass);
+  const ShapeControl control(problem, gains);
   ReferenceMotion reference(problem, h);
 
   Rollout result;
-  result.gain = gain;
+  result.gain = gains.rest;
+  result.low_gains = gains.low;
   result.launch_velocity = launch(backend);
   const std::unique_ptr<Simulation> cloth = backend.start(initial, result.launch_velocity);
   Recorder recorder(options.frames_per_second, problem.arrival_time, result);
@@ -95,11 +102,8 @@ Rollout rollout(const Backend& backend, double gain, const RolloutOptions& optio
   Points before;
   double squared_force = 0;
   for (Index n = 0; n < backend.steps(); ++n) {
-    if (gain > 0) {
-      shape_control(reference.shape(), cloth->positions(), gain, forces);
-      if (damping > 0) {
-        add_shape_damping(reference.velocity(), cloth->velocities(), damping, forces);
-      }
+    if (control.pulls()) {
+      control.pull(reference, cloth->positions(), cloth->velocities(), forces);
       squared_force += forces.squaredNorm();
     }
     const bool arriving = n + 1 == backend.steps();
@@ -158,7 +162,7 @@ Points disturbed(const Chain& chain, double size, unsigned seed) {
 double sensitivity(const Backend& backend, const Rollout& flight) {
   const Chain& chain = backend.problem().chain;
   const Points initial = disturbed(chain, backend.smallest_disturbance());
-  const Rollout twin = rollout(backend, flight.gain, {}, initial);
+  const Rollout twin = rollout(backend, gains_of(flight), {}, initial);
   if (flight.status == RolloutStatus::diverged || twin.status == RolloutStatus::diverged) {
     return std::numeric_limits<double>::infinity();
   }
