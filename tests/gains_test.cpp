@@ -1,6 +1,7 @@
-// Gains by group of modes: the law and its derivatives.
+// Gains by group of modes: the law, its derivatives, the joint search.
 
 #include <nuno/gains.h>
+#include <nuno/joint_search.h>
 #include <nuno/refine.h>
 #include <nuno/rollout.h>
 #include <nuno/shape_control.h>
@@ -268,6 +269,122 @@ TEST(GroupedFlight, IsRefinedLikeAnyOther) {
   const RefineSummary refined = refine(problem, by_group({3, 5}), make, make);
   EXPECT_LT(refined.flight.error.mean, 0.5 * refined.error_before);
   EXPECT_EQ(refined.flight.low_gains, std::vector<double>{3});
+}
+
+// ---- the joint search ------------------------------------------------------------------------
+
+/// A bowl in log α, narrow across its axes: best at 2, 8 and 0.5 N/m.
+template <typename Function>
+JointObjective made_of(Function error) {
+  JointObjective objective;
+  objective.errors = [error](std::span<const Gains> all) {
+    std::vector<double> errors;
+    for (const Gains& gains : all) errors.push_back(error(gains.groups()));
+    return errors;
+  };
+  objective.largest_gain = 1e3;
+  return objective;
+}
+
+double bowl(const std::vector<double>& groups) {
+  const double x = std::log(groups.front() / 2);
+  const double y = std::log(groups[groups.size() > 1 ? 1 : 0] / 8);
+  const double z = std::log(groups.back() / 0.5);
+  return 0.3 + x * x + std::pow(y - x, 2) + 9 * std::pow(z + y, 2);
+}
+
+TEST(JointSearch, FindsTheBottomOfABowl) {
+  const JointObjective objective = made_of(bowl);
+  const JointSearchSummary found = joint_search(objective, {1, bowl({1})}, {.groups = 3});
+  ASSERT_EQ(found.stages.size(), 3u);
+  EXPECT_EQ(found.status, OptimizeStatus::converged);
+  const std::vector<double> best = found.stages.back().gains.groups();
+  ASSERT_EQ(best.size(), 3u);
+  // The error's tolerance of 1e-6 is one of 1e-3 in log α.
+  EXPECT_NEAR(best[0], 2, 0.01);
+  EXPECT_NEAR(best[1], 8, 0.03);
+  EXPECT_NEAR(best[2], 0.5, 0.003);
+}
+
+TEST(JointSearch, IsNeverWorseThanTheStageBefore) {
+  for (Scene scene : {scene_library::straight_to_s(), scene_library::family_member(3),
+                      scene_library::family_member(7)}) {
+    for (const bool morph : {false, true}) {
+      scene.reference = morph ? Reference::morph : Reference::hold;
+      scene.damping_ratio = morph ? 0.7 : 0;
+      const auto backend = native::make_backend(make_problem(scene));
+      const OptimizeSummary one = global_search(objective(*backend));
+      const JointSearchSummary found =
+          joint_search(joint_objective(*backend), {one.gain, one.error},
+                       {.groups = 3, .valleys = 1, .rounds = 10});
+      ASSERT_EQ(found.stages.size(), 3u);
+      EXPECT_EQ(found.stages[0].error, one.error);
+      for (std::size_t k = 1; k < 3; ++k) {
+        EXPECT_LE(found.stages[k].error, found.stages[k - 1].error);
+        EXPECT_EQ(rollout(*backend, found.stages[k].gains).error.mean, found.stages[k].error);
+      }
+    }
+  }
+}
+
+TEST(JointSearch, HalvesTheErrorOfTheSCurveWithASecondGain) {
+  const auto backend = native::make_backend(hold_problem());
+  const OptimizeSummary one = global_search(objective(*backend));
+  const JointSearchSummary found = joint_search(joint_objective(*backend), {one.gain, one.error});
+  EXPECT_LT(found.stages[1].error, 0.6 * one.error);  // see docs/coefficients.md
+}
+
+TEST(JointSearch, DoesWithoutGradients) {
+  const auto backend = native::make_backend(morph_problem());
+  const OptimizeSummary one = global_search(objective(*backend));
+  JointObjective with = joint_objective(*backend), without = with;
+  without.gradients = nullptr;
+  const double exact = joint_search(with, {one.gain, one.error}).stages.back().error;
+  const double differences = joint_search(without, {one.gain, one.error}).stages.back().error;
+  EXPECT_LE(differences, one.error);
+  EXPECT_NEAR(differences / exact, 1, 1e-3);
+}
+
+TEST(JointSearch, StaysWithinItsBounds) {
+  JointObjective objective = made_of(
+      [](const std::vector<double>& groups) { return 1 / (1 + groups.front()) + groups.back(); });
+  objective.largest_gain = 7;
+  const auto errors = objective.errors;
+  objective.errors = [&](std::span<const Gains> all) {
+    for (const Gains& gains : all) EXPECT_LE(gains.largest(), 7);
+    return errors(all);
+  };
+  const Gains best = joint_search(objective, {1, 1.5}).stages.back().gains;
+  EXPECT_NEAR(best.low.front(), 7, 1e-9);
+  EXPECT_NEAR(best.rest, JointSearchOptions().smallest_gain, 1e-9);
+}
+
+TEST(JointSearch, KeepsOneGainWhereMoreBuyNothing) {
+  const JointObjective objective =
+      made_of([](const std::vector<double>& groups) { return 1 + groups.front() + groups.back(); });
+  const JointSearchSummary found = joint_search(objective, {0, 1});
+  EXPECT_EQ(found.stages.back().gains.count(), 1);
+  EXPECT_EQ(found.stages.back().gains.rest, 0);
+  EXPECT_EQ(found.stages.back().error, 1);
+}
+
+TEST(JointSearch, SurvivesAnEngineThatAlwaysDiverges) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  const JointObjective objective = made_of([=](const std::vector<double>&) { return infinity; });
+  const JointSearchSummary found = joint_search(objective, {1, infinity}, {.groups = 3});
+  EXPECT_EQ(found.stages.back().error, infinity);
+  EXPECT_EQ(found.stages.back().gains.rest, 1);
+}
+
+TEST(JointSearch, CountsItsRollouts) {
+  Index rollouts = 0;
+  JointObjective objective = made_of(bowl);
+  const auto errors = objective.errors;
+  objective.errors = [&](std::span<const Gains> all) {
+    rollouts += static_cast<Index>(all.size());
+    return errors(all);
+  };
+  EXPECT_EQ(joint_search(objective, {1, bowl({1})}).evaluations, rollouts);
 }
 
 }  // namespace
