@@ -83,6 +83,14 @@ void require_few_frames(const SceneFile& file) {
   }
 }
 
+void require_groups(const SceneFile& file, Index groups) {
+  const Index fewest = fewest_particles(groups);
+  if (groups > 1 && file.scene.particles < fewest) {
+    throw InputError(fmt::format("{}: /particles: {} is not >= {}, the fewest for {} coefficients",
+                                 file.path, file.scene.particles, fewest, groups));
+  }
+}
+
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file) {
   return make_backend(name, file, file.scene.time_step);
 }

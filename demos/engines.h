@@ -28,6 +28,9 @@ SceneFile parse_scene_file(const std::string& json, const std::string& path);
 /// Throws InputError if a result of this scene would hold more frames than memory does.
 void require_few_frames(const SceneFile& file);
 
+/// Throws InputError if the scene's particles have too few modes for so many groups of them.
+void require_groups(const SceneFile& file, Index groups);
+
 inline constexpr std::array<std::string_view, 2> backend_names = {"native", "box2d"};
 
 /// The engine called `name`, one of backend_names, made ready for the scene. Throws InputError

@@ -59,14 +59,14 @@ Optimization trade(const OptimizeOptions& options, const SceneFile& file, const 
 }
 
 /// Aims off on the native chain, and then, on another engine, off what is left there.
-RefineSummary aim_off(const OptimizeOptions& options, const SceneFile& file, double gain) {
+RefineSummary aim_off(const OptimizeOptions& options, const SceneFile& file, const Gains& gains) {
   const MakeBackend model = backend_maker("native", file);
-  RefineSummary refined = refine(file.problem, gain, model, model);
+  RefineSummary refined = refine(file.problem, gains, model, model);
   if (options.backend == "native") return refined;
   Problem aimed = file.problem;
   aimed.aim_offset = refined.aim_offset;
   constexpr double single_precision = 1e-5;
-  RefineSummary corrected = refine(aimed, gain, backend_maker(options.backend, file), model,
+  RefineSummary corrected = refine(aimed, gains, backend_maker(options.backend, file), model,
                                    {.tolerance = single_precision, .rounds = 4});
   corrected.rollouts += refined.rollouts;
   corrected.tangents += refined.tangents;
@@ -78,6 +78,7 @@ RefineSummary aim_off(const OptimizeOptions& options, const SceneFile& file, dou
 
 ExitStatus optimize(const OptimizeOptions& options) {
   SceneFile file = read_scene_file(options.scene, options.time_step);
+  require_groups(file, options.coefficients);
   auto backend = make_backend(options.backend, file);
   const double frames = options.out.empty() ? 0 : file.scene.frames_per_second;
   if (frames > 0) require_few_frames(file);
@@ -90,15 +91,23 @@ ExitStatus optimize(const OptimizeOptions& options) {
   Optimization found = options.error_limit || options.effort_limit
                            ? trade(options, file, *backend)
                            : search(options, file, *backend);
+  Gains gains = found.summary.gain;
+  double error = found.summary.error;
+  if (options.coefficients > 1) {
+    const JointObjective errors = with_progress(joint_objective(*backend), file.scene.name);
+    found.joint =
+        joint_search(errors, {found.summary.gain, error}, {.groups = options.coefficients});
+    gains = found.joint->stages.back().gains;
+    error = found.joint->stages.back().error;
+  }
   clear_progress();
-  const double gain = found.summary.gain;
   if (options.refine) {
-    found.refinement = aim_off(options, file, gain);
+    found.refinement = aim_off(options, file, gains);
     file.problem.aim_offset = found.refinement->aim_offset;
     backend = make_backend(options.backend, file);
   }
   // If every rollout diverged, the one at the gain it ended on says why.
-  const Rollout flight = rollout(*backend, gain, {.frames_per_second = frames});
+  const Rollout flight = rollout(*backend, gains, {.frames_per_second = frames});
   if (diverged(flight)) {
     report_divergence(options.scene, *backend, flight);
     return ExitStatus::diverged;
@@ -119,9 +128,16 @@ ExitStatus optimize(const OptimizeOptions& options) {
   fmt::print(summary, "  {:<17} {} rollouts in {}{}: {}\n", found.optimizer, search.evaluations,
              duration(search.seconds),
              search.status == OptimizeStatus::budget ? ", not reached" : "", search.reason);
+  if (found.joint) {
+    std::vector<double> errors;
+    for (const JointStage& stage : found.joint->stages) errors.push_back(percent * stage.error);
+    fmt::print(summary, "  {:<17} {:.4g} % with 1 … {} of them, {} rollouts in {}: {}\n",
+               "coefficients", fmt::join(errors, ", "), errors.size(), found.joint->evaluations,
+               duration(found.joint->seconds), found.joint->reason);
+  }
   if (found.refinement) {
     fmt::print(summary, "  {:<17} from {:.4g} % in {} rollouts and {} tangents, {}: {}\n",
-               "aiming off", percent * search.error, found.refinement->rollouts,
+               "aiming off", percent * error, found.refinement->rollouts,
                found.refinement->tangents, duration(found.refinement->seconds),
                found.refinement->reason);
   }

@@ -9,12 +9,13 @@ namespace nuno {
 
 ExitStatus simulate(const SimulateOptions& options) {
   const SceneFile file = read_scene_file(options.scene, options.time_step);
-  const auto backend = make_backend_for_gain(options.backend, file, options.gain);
+  require_groups(file, options.gains.count());
+  const auto backend = make_backend_for_gain(options.backend, file, options.gains.largest());
   const double frames = options.out.empty() ? 0 : file.scene.frames_per_second;
   if (frames > 0) require_few_frames(file);
   require_writable(options.out);
 
-  const Rollout flight = rollout(*backend, options.gain, {.frames_per_second = frames});
+  const Rollout flight = rollout(*backend, options.gains, {.frames_per_second = frames});
   if (diverged(flight)) {
     report_divergence(options.scene, *backend, flight);
     return ExitStatus::diverged;
