@@ -373,7 +373,7 @@ TEST(JointSearch, SurvivesAnEngineThatAlwaysDiverges) {
   const JointObjective objective = made_of([=](const std::vector<double>&) { return infinity; });
   const JointSearchSummary found = joint_search(objective, {1, infinity}, {.groups = 3});
   EXPECT_EQ(found.stages.back().error, infinity);
-  EXPECT_EQ(found.stages.back().gains.rest, 1);
+  EXPECT_EQ(found.stages.back().gains.groups(), std::vector<double>{1});
 }
 
 TEST(JointSearch, CountsItsRollouts) {
