@@ -59,6 +59,7 @@ TEST(LowModes, AreOrthonormalAndBlindToThePlace) {
 
 TEST(LowModes, ChangeSignOnceMoreEach) {
   const LowModes modes(N, 3);
+  ASSERT_EQ(modes.count(), 5);
   for (Index j = 0; j < modes.count(); ++j) {
     Index changes = 0;
     for (Index i = 1; i < N; ++i) changes += modes.shapes(j, i) * modes.shapes(j, i - 1) < 0;
@@ -335,7 +336,7 @@ TEST(JointSearch, HalvesTheErrorOfTheSCurveWithASecondGain) {
 }
 
 TEST(JointSearch, DoesWithoutGradients) {
-  const auto backend = native::make_backend(morph_problem());
+  const auto backend = native::make_backend(hold_problem());
   const OptimizeSummary one = global_search(objective(*backend));
   JointObjective with = joint_objective(*backend), without = with;
   without.gradients = nullptr;
