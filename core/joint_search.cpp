@@ -47,6 +47,7 @@ class LogObjective {
 
   std::vector<double> errors(const std::vector<Vector>& places) {
     std::vector<Gains> all;
+    all.reserve(places.size());
     for (const Vector& x : places) all.push_back(gains(x));
     evaluations_ += static_cast<Index>(all.size());
     return objective_.errors(all);
@@ -148,6 +149,7 @@ bool descend(LogObjective& objective, const JointSearchOptions& options, const V
     const Vector direction = hessian.direction(objective, here);
     if (direction.isZero(0)) break;
     std::vector<Vector> places;
+    places.reserve(lengths.size());
     for (const double length : lengths) {
       places.push_back(objective.within(here.x + length * direction));
     }
