@@ -16,12 +16,26 @@ std::vector<double> Backend::errors(std::span<const double> gains, const Points&
   return result;
 }
 
+std::vector<double> Backend::grouped_errors(std::span<const Gains> gains) const {
+  std::vector<double> result(gains.size());
+  parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
+    const auto at = static_cast<std::size_t>(i);
+    result[at] = rollout(*this, gains[at]).error.mean;
+  });
+  return result;
+}
+
 std::vector<ErrorSample> Backend::error_samples(std::span<const double>) const {
   assert(!"this engine has no slopes");
   return {};
 }
 
-Eigen::MatrixXd Backend::arrival_tangent(double) const {
+std::vector<ErrorGradient> Backend::error_gradients(std::span<const Gains>) const {
+  assert(!"this engine has no slopes");
+  return {};
+}
+
+Eigen::MatrixXd Backend::arrival_tangent(const Gains&) const {
   assert(!"this engine has no tangent");
   return {};
 }

@@ -8,7 +8,7 @@
 
 namespace nuno {
 
-RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
+RefineSummary refine(const Problem& problem, const Gains& gains, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Index particles = problem.chain.particles();
@@ -17,7 +17,7 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
 
   RefineSummary summary;
   summary.aim_offset = aimed.aim_offset;
-  summary.flight = rollout(*make(aimed), gain);
+  summary.flight = rollout(*make(aimed), gains);
   summary.rollouts = 1;
   summary.error_before = summary.flight.error.mean;
   summary.reason = fmt::format("{} rounds were not enough", options.rounds);
@@ -31,7 +31,7 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
       break;
     }
     aimed.aim_offset = summary.aim_offset;
-    const Eigen::MatrixXd tangent = model(aimed)->arrival_tangent(gain);
+    const Eigen::MatrixXd tangent = model(aimed)->arrival_tangent(gains);
     ++summary.tangents;
     if (!tangent.allFinite()) {
       summary.reason = "the tangent is not finite";
@@ -53,7 +53,7 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
       rows.bottomRows(tangent.cols()).diagonal().setConstant(lambda * size);
       const Vector step = rows.householderQr().solve(right);
       aimed.aim_offset = summary.aim_offset + step.reshaped(2, particles);
-      Rollout flight = rollout(*make(aimed), gain);
+      Rollout flight = rollout(*make(aimed), gains);
       ++summary.rollouts;
       after = (problem.target - flight.final).norm();
       if (after < before) {

@@ -70,27 +70,26 @@ double effort_unit(const Problem& problem) {
                                     : chain.length / (problem.arrival_time * problem.arrival_time));
 }
 
-Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options) {
-  return rollout(backend, gain, options, backend.problem().chain.initial);
+Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options) {
+  return rollout(backend, gains, options, backend.problem().chain.initial);
 }
 
 namespace {
 
 /// Steps until arrival or divergence, which it tells `result`, as it does the strain on the way.
 /// Returns the sum of the squared control forces [N²].
-double fly(const Backend& backend, Simulation& cloth, Recorder& recorder, Rollout& result) {
+double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Recorder& recorder,
+           Rollout& result) {
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
-  const double damping =
-      shape_damping(problem.damping_ratio, result.gain, problem.chain.particle_mass);
+  const ShapeControl control(problem, gains);
   ReferenceMotion reference(problem, h);
   Points forces = Points::Zero(2, problem.chain.particles());
   double squared_force = 0;
   recorder.record(0, cloth, false);
   for (Index n = 0; n < backend.steps(); ++n) {
-    if (result.gain > 0) {
-      shape_control(reference.shape(), cloth.positions(), result.gain, forces);
-      if (damping > 0) add_shape_damping(reference.velocity(), cloth.velocities(), damping, forces);
+    if (control.pulls()) {
+      control.pull(reference, cloth.positions(), cloth.velocities(), forces);
       squared_force += forces.squaredNorm();
     }
     cloth.step(forces);
@@ -99,9 +98,11 @@ double fly(const Backend& backend, Simulation& cloth, Recorder& recorder, Rollou
     if (!(strain < torn_strain)) {
       result.status = RolloutStatus::diverged;
       result.diverged_at_step = n + 1;
-      result.reason = !cloth->failure().empty() ? cloth->failure()
-                      : std::isfinite(strain)   ? "a segment is a thousand times its length"
-                                                : "a particle's position is no longer finite";
+      result.reason = cloth.failure();
+      if (result.reason.empty()) {
+        result.reason = std::isfinite(strain) ? "a segment is a thousand times its length"
+                                              : "a particle's position is no longer finite";
+      }
       break;
     }
     result.max_strain = std::max(result.max_strain, strain);
@@ -112,16 +113,23 @@ double fly(const Backend& backend, Simulation& cloth, Recorder& recorder, Rollou
 
 }  // namespace
 
-Rollout rollout(const Backend& backend, double gain, const RolloutOptions& options,
+Gains gains_of(const Rollout& flight) {
+  Gains gains(flight.gain);
+  gains.low = flight.low_gains;
+  return gains;
+}
+
+Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options,
                 const Points& initial) {
-  assert(gain >= 0);
+  assert(std::ranges::min(gains.groups()) >= 0);
   const Problem& problem = backend.problem();
   Rollout result;
-  result.gain = gain;
+  result.gain = gains.rest;
+  result.low_gains = gains.low;
   result.launch_velocity = launch(backend);
   const std::unique_ptr<Simulation> cloth = backend.start(initial, result.launch_velocity);
   Recorder recorder(options.frames_per_second, problem.arrival_time, result);
-  const double squared_force = fly(backend, *cloth, recorder, result);
+  const double squared_force = fly(backend, gains, *cloth, recorder, result);
 
   result.final = cloth->positions();
   if (result.status == RolloutStatus::ok) {
@@ -161,7 +169,7 @@ Points disturbed(const Chain& chain, double size, unsigned seed) {
 double sensitivity(const Backend& backend, const Rollout& flight) {
   const Chain& chain = backend.problem().chain;
   const Points initial = disturbed(chain, backend.smallest_disturbance());
-  const Rollout twin = rollout(backend, flight.gain, {}, initial);
+  const Rollout twin = rollout(backend, gains_of(flight), {}, initial);
   if (flight.status == RolloutStatus::diverged || twin.status == RolloutStatus::diverged) {
     return std::numeric_limits<double>::infinity();
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <nuno/gains.h>
+
 #include <array>
 #include <functional>
 #include <optional>
@@ -17,11 +19,11 @@ enum class ExitStatus {
   diverged = 3     ///< the simulation diverged
 };
 
-/// One rollout at one gain.
+/// One rollout.
 struct SimulateOptions {
   std::string scene;                ///< a file
   std::string backend = "native";   ///< one of backend_names
-  double gain = 0;                  ///< α ≥ 0 [N/m]; 0 is launch only
+  Gains gains = 0;                  ///< α ≥ 0 [N/m]; 0 is launch only
   std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
   std::string out;                  ///< result file, "-" for standard output, empty for none
 };
@@ -35,6 +37,7 @@ struct OptimizeOptions {
   std::optional<double> error_limit;
   /// Least error within this control effort; takes the optimiser's place.
   std::optional<double> effort_limit;
+  Index coefficients = 1;           ///< gains by group of modes, 1 … most_groups
   bool refine = false;              ///< aims off until the cloth is on the target
   bool robust = false;              ///< the error averaged over small disturbances of the start
   std::optional<double> time_step;  ///< [s], > 0; absent: the scene's

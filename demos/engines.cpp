@@ -83,6 +83,14 @@ void require_few_frames(const SceneFile& file) {
   }
 }
 
+void require_groups(const SceneFile& file, Index groups) {
+  const Index fewest = fewest_particles(groups);
+  if (groups > 1 && file.scene.particles < fewest) {
+    throw InputError(fmt::format("{}: /particles: {} is not >= {}, the fewest for {} coefficients",
+                                 file.path, file.scene.particles, fewest, groups));
+  }
+}
+
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file) {
   return make_backend(name, file, file.scene.time_step);
 }
@@ -112,7 +120,7 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
   return backend;
 }
 
-RefineSummary aim_off(std::string_view name, const SceneFile& file, double gain,
+RefineSummary aim_off(std::string_view name, const SceneFile& file, const Gains& gains,
                       const std::function<void()>& before_rollout) {
   const auto maker = [&](std::string_view engine) -> MakeBackend {
     return [&, make = backend_maker(engine, file)](const Problem& problem) {
@@ -121,13 +129,13 @@ RefineSummary aim_off(std::string_view name, const SceneFile& file, double gain,
     };
   };
   const MakeBackend model = maker("native");
-  RefineSummary refined = refine(file.problem, gain, model, model);
+  RefineSummary refined = refine(file.problem, gains, model, model);
   if (name == "native") return refined;
   Problem aimed = file.problem;
   aimed.aim_offset = refined.aim_offset;
   constexpr double single_precision = 1e-5;
   RefineSummary corrected =
-      refine(aimed, gain, maker(name), model, {.tolerance = single_precision, .rounds = 4});
+      refine(aimed, gains, maker(name), model, {.tolerance = single_precision, .rounds = 4});
   corrected.rollouts += refined.rollouts;
   corrected.tangents += refined.tangents;
   corrected.seconds += refined.seconds;

@@ -29,6 +29,9 @@ SceneFile parse_scene_file(const std::string& json, const std::string& path);
 /// Throws InputError if a result of this scene would hold more frames than memory does.
 void require_few_frames(const SceneFile& file);
 
+/// Throws InputError if the scene's particles have too few modes for so many groups of them.
+void require_groups(const SceneFile& file, Index groups);
+
 inline constexpr std::array<std::string_view, 2> backend_names = {"native", "box2d"};
 
 /// The engine called `name`, one of backend_names, made ready for the scene. Throws InputError
@@ -44,7 +47,7 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
 
 /// Aims off on the native chain, and then, on another engine, off what is left there.
 /// `before_rollout` is called before each; what it throws ends the work.
-RefineSummary aim_off(std::string_view name, const SceneFile& file, double gain,
+RefineSummary aim_off(std::string_view name, const SceneFile& file, const Gains& gains,
                       const std::function<void()>& before_rollout = {});
 
 inline constexpr std::array<std::string_view, 2> optimizer_names = {"global", "steepest-descent"};

@@ -71,6 +71,13 @@ Json to_json(const Optimization& optimization) {
     }
     result["trade_off"] = curve;
   }
+  if (optimization.joint) {
+    Json stages = Json::array();
+    for (const JointStage& stage : optimization.joint->stages) {
+      stages.push_back({{"alphas", stage.gains.groups()}, {"error", stage.error}});
+    }
+    result["coefficients"] = stages;
+  }
   if (optimization.refinement) {
     const RefineSummary& refinement = *optimization.refinement;
     result["refinement"] = {{"status", refinement.converged ? "converged" : "nearest"},
@@ -151,6 +158,7 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
                {"control_effort", rollout.control_effort},
                {"max_strain", rollout.max_strain},
                {"sensitivity", sensitivity}};
+  if (!rollout.low_gains.empty()) head["alphas"] = gains_of(rollout).groups();
   if (optimization) head["optimization"] = to_json(*optimization);
   head["launch_velocity"] = to_json(rollout.launch_velocity);
   head["target"] = to_json(problem.target);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nuno/backend.h>
+#include <nuno/joint_search.h>
 #include <nuno/optimize.h>
 #include <nuno/refine.h>
 #include <nuno/rollout.h>
@@ -21,6 +22,7 @@ struct Optimization {
   OptimizeSummary summary;
   std::optional<double> robust_error = {};  ///< of a robust search: mean over disturbed starts [m]
   std::vector<TradeOffPoint> trade_off = {};     ///< where a limit was asked for
+  std::optional<JointSearchSummary> joint = {};  ///< where there are several coefficients
   std::optional<RefineSummary> refinement = {};  ///< where the flight aims off
 };
 

@@ -48,6 +48,25 @@ std::string not_empty(const std::string& option, const std::string& text) {
   return text;
 }
 
+/// Numbers ≥ 0 with commas between them, a gain for every group.
+Gains gains(const std::string& option, const std::string& text) {
+  std::vector<double> groups;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find(',', start), text.size());
+    const std::string part = text.substr(start, end - start);
+    groups.push_back(number(option, part));
+    if (!(groups.back() >= 0)) {
+      throw CLI::ValidationError(option, fmt::format("{} is not >= 0", part));
+    }
+    start = end + 1;
+  }
+  if (static_cast<Index>(groups.size()) > most_groups) {
+    throw CLI::ValidationError(option,
+                               fmt::format("\"{}\" is more than {} gains", text, most_groups));
+  }
+  return Gains::of_groups(groups);
+}
+
 void add_scene(CLI::App& command, std::string& scene) {
   command
       .add_option_function<std::string>(
@@ -153,16 +172,11 @@ ExitStatus run(int argc, char** argv) {
   add_backend(simulate_command, simulation.backend);
   simulate_command
       .add_option_function<std::string>(
-          "--alpha",
-          [&](const std::string& text) {
-            simulation.gain = number("--alpha", text);
-            if (!(simulation.gain >= 0)) {
-              throw CLI::ValidationError("--alpha", fmt::format("{} is not >= 0", text));
-            }
-          },
-          "Gain of the shape control [N/m], >= 0; 0 is launch only")
+          "--alpha", [&](const std::string& text) { simulation.gains = gains("--alpha", text); },
+          "Gain of the shape control [N/m], >= 0; 0 is launch only.\n"
+          "A,B or A,B,C …: gains by group of modes, see optimize --coefficients")
       ->type_name("A")
-      ->default_str(fmt::format("{}", simulation.gain));
+      ->default_str(fmt::format("{}", simulation.gains.rest));
   add_time_step(simulate_command, simulation.time_step);
   add_out(simulate_command, simulation.out, "FILE", out_file);
   simulate_command.footer(which_reference);
@@ -202,6 +216,23 @@ ExitStatus run(int argc, char** argv) {
             "of the cloth's length, instead of the one of least error");
   add_limit("--effort-limit", optimization.effort_limit,
             "The gain of least error whose control effort is at most X");
+  optimize_command
+      .add_option_function<std::string>(
+          "--coefficients",
+          [&](const std::string& text) {
+            const double count = number("--coefficients", text);
+            if (!(count >= 1 && count <= most_groups && count == std::floor(count))) {
+              throw CLI::ValidationError(
+                  "--coefficients",
+                  fmt::format("{} is not a whole number within 1 … {}", text, most_groups));
+            }
+            optimization.coefficients = static_cast<Index>(count);
+          },
+          fmt::format("Gains of their own for low bending modes, 1 … {}: modes 1-2, 3-5,\n"
+                      "6-11 and the rest, found together from the best single gain on",
+                      most_groups))
+      ->type_name("K")
+      ->default_str(fmt::format("{}", optimization.coefficients));
   optimize_command.add_flag("--refine", optimization.refine,
                             "Then aim off the target until the cloth arrives on it, as near\n"
                             "as a cloth can; best with a damped \"morph\", see below");
@@ -218,6 +249,10 @@ ExitStatus run(int argc, char** argv) {
     }
     if (optimization.robust && (optimization.error_limit || optimization.effort_limit)) {
       throw CLI::ValidationError("--robust", "does not go with a limit");
+    }
+    if (optimization.coefficients > 1 &&
+        (optimization.robust || optimization.error_limit || optimization.effort_limit)) {
+      throw CLI::ValidationError("--coefficients", "does not go with --robust or a limit");
     }
     chosen = [&] { return optimize(optimization); };
   });

@@ -60,6 +60,7 @@ Optimization trade(const OptimizeOptions& options, const SceneFile& file, const 
 
 ExitStatus optimize(const OptimizeOptions& options) {
   SceneFile file = read_scene_for(options.out, options.scene, options.time_step);
+  require_groups(file, options.coefficients);
   auto backend = make_backend(options.backend, file);
   std::FILE* const summary = people(options.out);
   if (const std::string words = verdict(assess(*backend)); !words.empty()) {
@@ -69,15 +70,23 @@ ExitStatus optimize(const OptimizeOptions& options) {
   Optimization found = options.error_limit || options.effort_limit
                            ? trade(options, file, *backend)
                            : search(options, file, *backend);
+  Gains gains = found.summary.gain;
+  double error = found.summary.error;
+  if (options.coefficients > 1) {
+    const JointObjective errors = with_progress(joint_objective(*backend), file.scene.name);
+    found.joint =
+        joint_search(errors, {found.summary.gain, error}, {.groups = options.coefficients});
+    gains = found.joint->stages.back().gains;
+    error = found.joint->stages.back().error;
+  }
   clear_progress();
-  const double gain = found.summary.gain;
   if (options.refine) {
-    found.refinement = aim_off(options.backend, file, gain);
+    found.refinement = aim_off(options.backend, file, gains);
     file.problem.aim_offset = found.refinement->aim_offset;
     backend = make_backend(options.backend, file);
   }
   // If every rollout diverged, the one at the gain it ended on says why.
-  const ExitStatus status = fly(file, *backend, gain, options.out, found);
+  const ExitStatus status = fly(file, *backend, gains, options.out, found);
   if (status != ExitStatus::done) return status;
   const double percent = 100 / file.problem.chain.length;
   if (found.robust_error) {
@@ -88,9 +97,16 @@ ExitStatus optimize(const OptimizeOptions& options) {
   fmt::print(summary, "  {:<17} {} rollouts in {}{}: {}\n", found.optimizer, search.evaluations,
              duration(search.seconds),
              search.status == OptimizeStatus::budget ? ", not reached" : "", search.reason);
+  if (found.joint) {
+    std::vector<double> errors;
+    for (const JointStage& stage : found.joint->stages) errors.push_back(percent * stage.error);
+    fmt::print(summary, "  {:<17} {:.4g} % with 1 … {} of them, {} rollouts in {}: {}\n",
+               "coefficients", fmt::join(errors, ", "), errors.size(), found.joint->evaluations,
+               duration(found.joint->seconds), found.joint->reason);
+  }
   if (found.refinement) {
     fmt::print(summary, "  {:<17} from {:.4g} % in {} rollouts and {} tangents, {}: {}\n",
-               "aiming off", percent * search.error, found.refinement->rollouts,
+               "aiming off", percent * error, found.refinement->rollouts,
                found.refinement->tangents, duration(found.refinement->seconds),
                found.refinement->reason);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "output.h"
@@ -31,7 +32,7 @@ std::string divergence_message(const std::string& scene_path, const Backend& bac
                                const Rollout& rollout) {
   const bool stopped = rollout.status == RolloutStatus::diverged;
   return fmt::format("{}: diverged on {} at α = {} N/m in step {} of {}: {}", scene_path,
-                     backend.name(), rollout.gain,
+                     backend.name(), fmt::join(gains_of(rollout).groups(), ", "),
                      stopped ? rollout.diverged_at_step : backend.steps(), backend.steps(),
                      stopped ? rollout.reason : "the error is no longer finite");
 }
@@ -41,22 +42,33 @@ void report_divergence(const std::string& scene_path, const Backend& backend,
   complain(divergence_message(scene_path, backend, rollout));
 }
 
-Objective with_progress(Objective objective, const std::string& label) {
-  const auto count = std::make_shared<std::size_t>(0);
-  const auto counted = [count, label](std::span<const double> gains) {
+namespace {
+
+/// The function `of` many gains at once, if there is one, which counts them for a person.
+template <typename Answers, typename Gain>
+void count_rollouts(std::function<Answers(std::span<const Gain>)>& of,
+                    const std::shared_ptr<std::size_t>& count, const std::string& label) {
+  if (!of) return;
+  of = [count, label, of](std::span<const Gain> gains) {
     *count += gains.size();
     show_progress(fmt::format("{}: {} rollouts", label, *count));
+    return of(gains);
   };
-  objective.errors = [counted, errors = objective.errors](std::span<const double> gains) {
-    counted(gains);
-    return errors(gains);
-  };
-  if (objective.samples) {
-    objective.samples = [counted, samples = objective.samples](std::span<const double> gains) {
-      counted(gains);
-      return samples(gains);
-    };
-  }
+}
+
+}  // namespace
+
+Objective with_progress(Objective objective, const std::string& label) {
+  const auto count = std::make_shared<std::size_t>(0);
+  count_rollouts(objective.errors, count, label);
+  count_rollouts(objective.samples, count, label);
+  return objective;
+}
+
+JointObjective with_progress(JointObjective objective, const std::string& label) {
+  const auto count = std::make_shared<std::size_t>(0);
+  count_rollouts(objective.errors, count, label);
+  count_rollouts(objective.gradients, count, label);
   return objective;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nuno/joint_search.h>
 #include <nuno/optimize.h>
 #include <nuno/rollout.h>
 
@@ -34,5 +35,6 @@ void report_divergence(const std::string& scene_path, const Backend& backend,
 
 /// The same objective, which counts its rollouts for a person at a terminal.
 Objective with_progress(Objective objective, const std::string& label);
+JointObjective with_progress(JointObjective objective, const std::string& label);
 
 }  // namespace nuno

@@ -5,8 +5,9 @@ namespace nuno {
 
 ExitStatus simulate(const SimulateOptions& options) {
   const SceneFile file = read_scene_for(options.out, options.scene, options.time_step);
-  return fly(file, *make_backend_for_gain(options.backend, file, options.gain), options.gain,
-             options.out);
+  require_groups(file, options.gains.count());
+  return fly(file, *make_backend_for_gain(options.backend, file, options.gains.largest()),
+             options.gains, options.out);
 }
 
 }  // namespace nuno

@@ -14,10 +14,10 @@ SceneFile read_scene_for(const std::string& out, const std::string& path,
   return file;
 }
 
-ExitStatus fly(const SceneFile& file, const Backend& backend, double gain, const std::string& out,
-               const std::optional<Optimization>& optimization) {
+ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains,
+               const std::string& out, const std::optional<Optimization>& optimization) {
   const double frames = out.empty() ? 0 : file.scene.frames_per_second;
-  const Rollout flight = rollout(backend, gain, {.frames_per_second = frames});
+  const Rollout flight = rollout(backend, gains, {.frames_per_second = frames});
   if (diverged(flight)) {
     report_divergence(file.path, backend, flight);
     return ExitStatus::diverged;

@@ -18,7 +18,8 @@ SceneFile read_scene_for(const std::string& out, const std::string& path,
 
 /// Flies once, writes the result to `out` and tells people what happened, or why the flight
 /// diverged.
-ExitStatus fly(const SceneFile& file, const Backend& backend, double gain, const std::string& out,
+ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains,
+               const std::string& out,
                const std::optional<Optimization>& optimization = std::nullopt);
 
 }  // namespace nuno

@@ -25,7 +25,9 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
   const double percent = 100 / chain.length;
   fmt::print(file, "{}: {} particles on {}, {} steps of {}\n", printable(scene), chain.particles(),
              backend.name(), backend.steps(), duration(backend.time_step()));
-  fmt::print(file, "  {:<17} {:.4g} N/m\n", "gain α", rollout.gain);
+  const std::vector<double> gains = gains_of(rollout).groups();
+  fmt::print(file, "  {:<17} {:.4g} N/m\n", gains.size() > 1 ? "gains α" : "gain α",
+             fmt::join(gains, ", "));
   fmt::print(file, "  {:<17} {:.4g} % of the cloth's length; worst particle {:.4g} %\n", "error",
              percent * rollout.error.mean, percent * rollout.error.max);
   fmt::print(file, "  {:<17} {:.3g} m from the target's\n", "centroid", rollout.error.centroid);

@@ -248,11 +248,14 @@ HWY_INLINE void store_lanes(Pack number, double* values) {
   hn::StoreU(number.lanes, Pack::Tag(), values);
 }
 
-HWY_INLINE Real gain_number(const double* gains, Real) { return *gains; }
-HWY_INLINE Pack gain_number(const double* gains, Pack) { return load_lanes(gains, Pack()); }
+// Numbers of a gain in every lane; `seeds` is 1 where the slope is with respect to it, 0 elsewhere.
+HWY_INLINE Real gain_number(const double* gains, const double*, Real) { return *gains; }
+HWY_INLINE Pack gain_number(const double* gains, const double*, Pack) {
+  return load_lanes(gains, Pack());
+}
 template <typename T>
-HWY_INLINE Dual<T> gain_number(const double* gains, Dual<T>) {
-  return {load_lanes(gains, T()), T(1.0)};
+HWY_INLINE Dual<T> gain_number(const double* gains, const double* seeds, Dual<T>) {
+  return {load_lanes(gains, T()), load_lanes(seeds, T())};
 }
 
 template <typename T>
@@ -274,10 +277,12 @@ HWY_INLINE void write_lanes(Dual<T> number, double* finals, double* tangents, In
 }
 
 /// β = 2ζ·√(α·m), shape_damping of the core; its slope is β/2α.
-HWY_INLINE Real damping_number(const double* gains, double ratio, double mass, Real) {
+HWY_INLINE Real damping_number(const double* gains, const double*, double ratio, double mass,
+                               Real) {
   return shape_damping(ratio, *gains, mass);
 }
-HWY_INLINE Pack damping_number(const double* gains, double ratio, double mass, Pack) {
+HWY_INLINE Pack damping_number(const double* gains, const double*, double ratio, double mass,
+                               Pack) {
   double damping[HWY_MAX_BYTES / sizeof(double)] = {};
   for (Index lane = 0; lane < lanes_of(Pack()); ++lane) {
     damping[lane] = shape_damping(ratio, gains[lane], mass);
@@ -285,18 +290,90 @@ HWY_INLINE Pack damping_number(const double* gains, double ratio, double mass, P
   return load_lanes(damping, Pack());
 }
 template <typename T>
-HWY_INLINE Dual<T> damping_number(const double* gains, double ratio, double mass, Dual<T>) {
-  const T damping = damping_number(gains, ratio, mass, T());
+HWY_INLINE Dual<T> damping_number(const double* gains, const double* seeds, double ratio,
+                                  double mass, Dual<T>) {
+  const T damping = damping_number(gains, seeds, ratio, mass, T());
   const T gain = load_lanes(gains, T());
   // At α = 0 the slope is infinite; there it is given as none.
   const T slope = where_greater(gain, T(0.0), T(0.5) * damping / gain, T(0.0));
-  return {damping, slope};
+  return {damping, load_lanes(seeds, T()) * slope};
 }
 
-template <bool damped_control, typename T>
+/// What one group of modes is pulled with.
+template <typename T>
+struct GroupNumbers {
+  T gain, damping;
+};
+template <typename T>
+HWY_INLINE GroupNumbers<T> group_numbers(const ChainPlan& plan, const FlightGains& gains,
+                                         Index group) {
+  double values[HWY_MAX_BYTES / sizeof(double)] = {};
+  double seeds[HWY_MAX_BYTES / sizeof(double)] = {};
+  for (Index lane = 0; lane < lanes_of(T()); ++lane) {
+    const Index flight = std::min(lane, gains.flights() - 1);
+    values[lane] = gains.value(flight, group);
+    seeds[lane] = gains.seed(flight) == group ? 1 : 0;
+  }
+  return {gain_number(values, seeds, T()),
+          damping_number(values, seeds, plan.damping_ratio, plan.particle_mass, T())};
+}
+
+/// The part of shape control by which the low modes' gains differ from the last group's.
+template <typename T>
+struct LowModePull {
+  Index count = 0;
+  const double* shapes = nullptr;  ///< [modes × N]
+  GroupNumbers<T> excess[most_low_modes];
+  Vec2<T> amplitude[most_low_modes];  ///< of the force on each mode
+
+  HWY_INLINE void prepare(const ChainPlan& plan, const FlightGains& gains) {
+    const GroupNumbers<T> rest = group_numbers<T>(plan, gains, gains.groups() - 1);
+    count = gains.low_modes->count();
+    shapes = gains.low_modes->shapes.data();
+    for (Index j = 0; j < count; ++j) {
+      const Index group = gains.low_modes->group[static_cast<std::size_t>(j)];
+      const GroupNumbers<T> own = group_numbers<T>(plan, gains, group);
+      excess[j] = {own.gain - rest.gain, own.damping - rest.damping};
+    }
+  }
+
+  /// Projects what is missing of shape and velocity, `offset(i)` and `lag(i)` at particle i.
+  template <typename Offset, typename Lag>
+  HWY_INLINE void project(Index particles, Offset&& offset, Lag&& lag) {
+    const T zero = Constant<T>::of(0);
+    Vec2<T> spring[most_low_modes], dashpot[most_low_modes];
+    for (Index j = 0; j < count; ++j) spring[j] = dashpot[j] = {zero, zero};
+    for (Index i = 0; i < particles; ++i) {
+      const Vec2<T> o = offset(i);
+      const Vec2<T> u = lag(i);
+      for (Index j = 0; j < count; ++j) {
+        const double weight = shapes[i * count + j];
+        spring[j] = spring[j] + Vec2<T>{scale(weight, o.x), scale(weight, o.y)};
+        dashpot[j] = dashpot[j] + Vec2<T>{scale(weight, u.x), scale(weight, u.y)};
+      }
+    }
+    for (Index j = 0; j < count; ++j) {
+      amplitude[j] = excess[j].gain * spring[j] + excess[j].damping * dashpot[j];
+    }
+  }
+
+  HWY_INLINE Vec2<T> add_to(Vec2<T> force, Index i) const {
+    for (Index j = 0; j < count; ++j) {
+      const double weight = shapes[i * count + j];
+      force = force + Vec2<T>{scale(weight, amplitude[j].x), scale(weight, amplitude[j].y)};
+    }
+    return force;
+  }
+};
+
+/// What shape control is made of: springs, dashpots too, and both with gains by group.
+enum class Control { springs, damped, grouped };
+
+template <Control control, typename T>
 void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* initial,
-               const double* launch_velocity, const double* gains, Index count, double* finals,
+               const double* launch_velocity, const FlightGains& gains, double* finals,
                double* tangents) {
+  constexpr bool damped_control = control != Control::springs;
   const Index n = plan.particles;
   const auto size = static_cast<std::size_t>(n);
   const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
@@ -311,52 +388,63 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
     sums.velocity = sums.velocity + v[i];
   }
 
-  double padded[HWY_MAX_BYTES / sizeof(double)] = {};
-  for (Index lane = 0; lane < lanes_of(T()); ++lane) {
-    padded[lane] = gains[std::min(lane, count - 1)];
-  }
-  const T gain = gain_number(padded, T());
-  const T damping = damping_number(padded, plan.damping_ratio, plan.particle_mass, T());
+  const GroupNumbers<T> rest = group_numbers<T>(plan, gains, gains.groups() - 1);
+  const T gain = rest.gain, damping = rest.damping;
+  LowModePull<T> low_modes;
+  if constexpr (control == Control::grouped) low_modes.prepare(plan, gains);
   const T particles = Constant<T>::of(static_cast<double>(n));
   for (Index step = 0; step < plan.steps; ++step) {
     const double* shape = reference.shape().data();
     const double* motion = reference.velocity().data();
     const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
     const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
-    sums = advance<damped_control>(
-        plan, step == 0, x.get(), v.get(), segments.get(),
-        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
-          Vec2<T> force{gain * shift(shape[2 * j], center.x - position.x),
-                        gain * shift(shape[2 * j + 1], center.y - position.y)};
-          if constexpr (damped_control) {
-            force = force + Vec2<T>{damping * shift(motion[2 * j], drift.x - velocity.x),
-                                    damping * shift(motion[2 * j + 1], drift.y - velocity.y)};
-          }
-          return force;
-        });
+    const auto offset = [&](Index j, const Vec2<T>& position) NUNO_INLINE_LAMBDA {
+      return Vec2<T>{shift(shape[2 * j], center.x - position.x),
+                     shift(shape[2 * j + 1], center.y - position.y)};
+    };
+    const auto lag = [&](Index j, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
+      return Vec2<T>{shift(motion[2 * j], drift.x - velocity.x),
+                     shift(motion[2 * j + 1], drift.y - velocity.y)};
+    };
+    if constexpr (control == Control::grouped) {
+      low_modes.project(
+          n, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
+          [&](Index j) NUNO_INLINE_LAMBDA { return lag(j, v[j]); });
+    }
+    sums = advance<damped_control>(plan, step == 0, x.get(), v.get(), segments.get(),
+                                   [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity)
+                                       NUNO_INLINE_LAMBDA {
+                                         Vec2<T> force = gain * offset(j, position);
+                                         if constexpr (damped_control)
+                                           force = force + damping * lag(j, velocity);
+                                         if constexpr (control == Control::grouped)
+                                           force = low_modes.add_to(force, j);
+                                         return force;
+                                       });
     reference.advance();
   }
+  const Index count = gains.flights();
   for (Index i = 0; i < n; ++i) {
     write_lanes(x[i].x, finals + 2 * i, tangents + 2 * i, 2 * n, count);
     write_lanes(x[i].y, finals + 2 * i + 1, tangents + 2 * i + 1, 2 * n, count);
   }
 }
 
+/// Gains by group take the damped path, whose dashpots may be nothing.
 template <typename T>
-void fly_lanes(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-               const double* launch_velocity, const double* gains, Index count, double* finals,
-               double* tangents) {
-  const auto flight = plan.damping_ratio > 0 ? fly_lanes<true, T> : fly_lanes<false, T>;
-  flight(plan, reference, initial, launch_velocity, gains, count, finals, tangents);
+auto flight_of(const ChainPlan& plan, const FlightGains& gains) {
+  if (gains.low_modes != nullptr) return fly_lanes<Control::grouped, T>;
+  return plan.damping_ratio > 0 ? fly_lanes<Control::damped, T> : fly_lanes<Control::springs, T>;
 }
 
 /// The number whose value is the same in every lane and whose slope differs.
 HWY_INLINE Dual<Pack> with_slopes(double value, Pack slope) { return {Pack(value), slope}; }
 
-template <bool damped_control>
+template <Control control>
 void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* initial,
-                     const double* launch_velocity, double gain, const double* aim_directions,
-                     Index count, double* tangents) {
+                     const double* launch_velocity, const FlightGains& gains,
+                     const double* aim_directions, Index count, double* tangents) {
+  constexpr bool damped_control = control != Control::springs;
   using T = Dual<Pack>;
   const Index n = plan.particles;
   const auto size = static_cast<std::size_t>(n);
@@ -382,7 +470,10 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
     sums.velocity = sums.velocity + v[i];
   }
 
+  const double gain = gains.values.back();
   const double damping = shape_damping(plan.damping_ratio, gain, plan.particle_mass);
+  LowModePull<T> low_modes;
+  if constexpr (control == Control::grouped) low_modes.prepare(plan, gains);
   const T particles = Constant<T>::of(static_cast<double>(n));
   for (Index step = 0; step < plan.steps; ++step) {
     const double* shape = reference.shape().data();
@@ -391,19 +482,31 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
     const Pack rate(reference.aim_rate());
     const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
     const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
+    const auto offset = [&](Index j, const Vec2<T>& position) NUNO_INLINE_LAMBDA {
+      const Vec2<T> place{with_slopes(shape[2 * j], share * aim[j].x),
+                          with_slopes(shape[2 * j + 1], share * aim[j].y)};
+      return place + (center - position);
+    };
+    const auto lag = [&](Index j, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
+      const Vec2<T> speed{with_slopes(motion[2 * j], rate * aim[j].x),
+                          with_slopes(motion[2 * j + 1], rate * aim[j].y)};
+      return speed + (drift - velocity);
+    };
+    if constexpr (control == Control::grouped) {
+      low_modes.project(
+          n, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
+          [&](Index j) NUNO_INLINE_LAMBDA { return lag(j, v[j]); });
+    }
     sums = advance<damped_control>(
         plan, step == 0, x.get(), v.get(), segments.get(),
         [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
-          const Vec2<T> place{with_slopes(shape[2 * j], share * aim[j].x),
-                              with_slopes(shape[2 * j + 1], share * aim[j].y)};
-          const Vec2<T> miss = place + (center - position);
+          const Vec2<T> miss = offset(j, position);
           Vec2<T> force{scale(gain, miss.x), scale(gain, miss.y)};
           if constexpr (damped_control) {
-            const Vec2<T> speed{with_slopes(motion[2 * j], rate * aim[j].x),
-                                with_slopes(motion[2 * j + 1], rate * aim[j].y)};
-            const Vec2<T> lag = speed + (drift - velocity);
-            force = force + Vec2<T>{scale(damping, lag.x), scale(damping, lag.y)};
+            const Vec2<T> late = lag(j, velocity);
+            force = force + Vec2<T>{scale(damping, late.x), scale(damping, late.y)};
           }
+          if constexpr (control == Control::grouped) force = low_modes.add_to(force, j);
           return force;
         });
     reference.advance();
@@ -415,33 +518,32 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
 }
 
 void fly_along_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-                   const double* launch_velocity, double gain, const double* aim_directions,
-                   Index count, double* tangents) {
-  const auto flight =
-      plan.damping_ratio > 0 && gain > 0 ? fly_along_lanes<true> : fly_along_lanes<false>;
+                   const double* launch_velocity, const FlightGains& gains,
+                   const double* aim_directions, Index count, double* tangents) {
+  const bool damped = plan.damping_ratio > 0 && gains.values.back() > 0;
+  const auto flight = gains.low_modes != nullptr ? fly_along_lanes<Control::grouped>
+                      : damped                   ? fly_along_lanes<Control::damped>
+                                                 : fly_along_lanes<Control::springs>;
   for (Index first = 0; first < count; first += lanes_of(Pack())) {
     const Index skip = first * 2 * plan.particles;
-    flight(plan, reference, initial, launch_velocity, gain, aim_directions + skip,
+    flight(plan, reference, initial, launch_velocity, gains, aim_directions + skip,
            std::min(lanes_of(Pack()), count - first), tangents + skip);
   }
 }
 
 void fly_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-             const double* launch_velocity, const double* gains, Index count, double* finals,
+             const double* launch_velocity, const FlightGains& gains, double* finals,
              double* tangents) {
   const Index wide = lanes_of(Pack());
+  const Index count = gains.flights();
   for (Index first = 0; first < count; first += wide) {
-    const Index here = std::min(wide, count - first);
+    const FlightGains here = gains.part(first, std::min(wide, count - first));
     double* out = finals + first * 2 * plan.particles;
     double* out_tangents = tangents == nullptr ? nullptr : tangents + first * 2 * plan.particles;
-    if (tangents != nullptr) {
-      fly_lanes<Dual<Pack>>(plan, reference, initial, launch_velocity, gains + first, here, out,
-                            out_tangents);
-    } else if (here == 1) {
-      fly_lanes<Real>(plan, reference, initial, launch_velocity, gains + first, here, out, nullptr);
-    } else {
-      fly_lanes<Pack>(plan, reference, initial, launch_velocity, gains + first, here, out, nullptr);
-    }
+    const auto flight = tangents != nullptr   ? flight_of<Dual<Pack>>(plan, here)
+                        : here.flights() == 1 ? flight_of<Real>(plan, here)
+                                              : flight_of<Pack>(plan, here);
+    flight(plan, reference, initial, launch_velocity, here, out, out_tangents);
   }
 }
 
@@ -461,24 +563,31 @@ HWY_EXPORT(fly_along_all);
 HWY_EXPORT(lanes);
 HWY_EXPORT(instruction_set);
 
+FlightGains FlightGains::part(Index first, Index count) const {
+  const auto at = [](Index index) { return static_cast<std::size_t>(index); };
+  FlightGains result = *this;
+  result.values = values.subspan(at(first * groups()), at(count * groups()));
+  if (!seeds.empty()) result.seeds = seeds.subspan(at(first), at(count));
+  return result;
+}
+
 void step(const ChainPlan& plan, bool first, const double* forces, double* positions,
           double* velocities, ScalarScratch& scratch) {
   HWY_DYNAMIC_DISPATCH(step_scalar)(plan, first, forces, positions, velocities, scratch);
 }
 
 void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-         const double* launch_velocity, std::span<const double> gains, double* finals,
+         const double* launch_velocity, const FlightGains& gains, double* finals,
          double* tangents) {
   HWY_DYNAMIC_DISPATCH(fly_all)
-  (plan, reference, initial, launch_velocity, gains.data(), static_cast<Index>(gains.size()),
-   finals, tangents);
+  (plan, reference, initial, launch_velocity, gains, finals, tangents);
 }
 
 void fly_along(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-               const double* launch_velocity, double gain, const double* aim_directions,
-               Index count, double* tangents) {
+               const double* launch_velocity, const FlightGains& gains,
+               const double* aim_directions, Index count, double* tangents) {
   HWY_DYNAMIC_DISPATCH(fly_along_all)
-  (plan, reference, initial, launch_velocity, gain, aim_directions, count, tangents);
+  (plan, reference, initial, launch_velocity, gains, aim_directions, count, tangents);
 }
 
 Index lanes() { return HWY_DYNAMIC_DISPATCH(lanes)(); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nuno/gains.h>
 #include <nuno/reference_motion.h>
 
 #include <span>
@@ -42,18 +43,37 @@ struct ScalarScratch {
 void step(const ChainPlan& plan, bool first, const double* forces, double* positions,
           double* velocities, ScalarScratch& scratch);
 
-/// One whole flight under shape control towards `reference` for each gain: final positions [2N]
-/// after another in `finals`, and their derivatives with respect to the gain in `tangents` unless
-/// that is null. Equal, bit for bit, to steps of `step` under shape_control.
-void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-         const double* launch_velocity, std::span<const double> gains, double* finals,
-         double* tangents);
+/// The gains of several flights.
+struct FlightGains {
+  std::span<const double> values;  ///< of every group [groups × flights], a flight after another
+  const LowModes* low_modes = nullptr;  ///< of all groups but the last; null: there is but one
+  /// The group with respect to whose gain a flight's derivatives are taken, or no_group; empty: all
+  /// the first.
+  std::span<const Index> seeds = {};
 
-/// One flight at one gain: the derivatives of its final positions [2N] along each of `count`
-/// directions of the aim offset [2N], one after another.
+  static constexpr Index no_group = -1;
+  Index groups() const { return low_modes == nullptr ? 1 : low_modes->group.back() + 2; }
+  Index flights() const { return static_cast<Index>(values.size()) / groups(); }
+  double value(Index flight, Index group) const {
+    return values[static_cast<std::size_t>(flight * groups() + group)];
+  }
+  Index seed(Index flight) const {
+    return seeds.empty() ? 0 : seeds[static_cast<std::size_t>(flight)];
+  }
+  FlightGains part(Index first, Index count) const;
+};
+
+/// One whole flight under shape control towards `reference` for each of `gains`: final positions
+/// [2N] after another in `finals`, and their derivatives with respect to a gain in `tangents`
+/// unless that is null. Equal, bit for bit, to steps of `step` under ShapeControl.
+void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+         const double* launch_velocity, const FlightGains& gains, double* finals, double* tangents);
+
+/// One flight under the gains of `gains`, a single flight: the derivatives of its final positions
+/// [2N] along each of `count` directions of the aim offset [2N], one after another.
 void fly_along(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-               const double* launch_velocity, double gain, const double* aim_directions,
-               Index count, double* tangents);
+               const double* launch_velocity, const FlightGains& gains,
+               const double* aim_directions, Index count, double* tangents);
 
 /// Gains that `fly` takes side by side, one a SIMD lane.
 Index lanes();

@@ -112,7 +112,16 @@ class NativeBackend final : public Backend {
   using Backend::errors;
   std::vector<double> errors(std::span<const double> gains, const Points& initial) const override {
     std::vector<double> result;
-    for (const ErrorSample& sample : fly_over(gains, initial, false)) {
+    for (const ErrorSample& sample : fly_over({gains}, initial, false)) {
+      result.push_back(sample.error);
+    }
+    return result;
+  }
+
+  std::vector<double> grouped_errors(std::span<const Gains> gains) const override {
+    const GroupedFlights flights(problem(), gains, 1);
+    std::vector<double> result;
+    for (const ErrorSample& sample : fly_over(flights.gains(), problem().chain.initial, false)) {
       result.push_back(sample.error);
     }
     return result;
@@ -120,10 +129,24 @@ class NativeBackend final : public Backend {
 
   bool has_slopes() const override { return true; }
   std::vector<ErrorSample> error_samples(std::span<const double> gains) const override {
-    return fly_over(gains, problem().chain.initial, true);
+    return fly_over({gains}, problem().chain.initial, true);
   }
 
-  Eigen::MatrixXd arrival_tangent(double gain) const override {
+  std::vector<ErrorGradient> error_gradients(std::span<const Gains> gains) const override {
+    if (gains.empty()) return {};
+    const auto groups = static_cast<std::size_t>(gains.front().count());
+    const GroupedFlights flights(problem(), gains, gains.front().count());
+    const std::vector<ErrorSample> samples =
+        fly_over(flights.gains(), problem().chain.initial, true);
+    std::vector<ErrorGradient> result(gains.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      result[i / groups].error = samples[i].error;
+      result[i / groups].slopes.push_back(samples[i].slope);
+    }
+    return result;
+  }
+
+  Eigen::MatrixXd arrival_tangent(const Gains& gains) const override {
     const Index size = problem().target.size();
     const ReferenceMotion reference(problem(), time_step());
     // A unit aim offset of each coordinate, about its centroid.
@@ -133,36 +156,60 @@ class NativeBackend final : public Backend {
       direction = shape_of(direction).eval();
     }
     const Points velocities = nuno::launch(*this);
+    const GroupedFlights flight(problem(), {&gains, 1}, 0);
     Eigen::MatrixXd tangent(size, size);
     const Index batch = lanes();
     parallel_for((size + batch - 1) / batch, [&](Index b) {
       const Index first = b * batch;
-      fly_along(plan_, reference, problem().chain.initial.data(), velocities.data(), gain,
+      fly_along(plan_, reference, problem().chain.initial.data(), velocities.data(), flight.gains(),
                 aim.col(first).data(), std::min(batch, size - first), tangent.col(first).data());
     });
     return tangent;
   }
 
  private:
-  std::vector<ErrorSample> fly_over(std::span<const double> gains, const Points& initial,
+  /// Gains by group in the kernel's layout: each of them `copies` times, with the slope by another
+  /// group each time, or once without any if `copies` is 0.
+  class GroupedFlights {
+   public:
+    GroupedFlights(const Problem& problem, std::span<const Gains> gains, Index copies)
+        : modes_(problem.chain.particles(), gains.empty() ? 1 : gains.front().count()) {
+      for (const Gains& each : gains) {
+        for (Index copy = 0; copy < std::max<Index>(copies, 1); ++copy) {
+          values_.insert(values_.end(), each.low.begin(), each.low.end());
+          values_.push_back(each.rest);
+          seeds_.push_back(copies == 0 ? FlightGains::no_group : copy);
+        }
+      }
+    }
+    FlightGains gains() const { return {values_, modes_.count() > 0 ? &modes_ : nullptr, seeds_}; }
+
+   private:
+    LowModes modes_;
+    std::vector<double> values_;
+    std::vector<Index> seeds_;
+  };
+
+  std::vector<ErrorSample> fly_over(const FlightGains& gains, const Points& initial,
                                     bool with_slopes) const {
     const Points velocities = launch(*this);
-    std::vector<ErrorSample> samples(gains.size());
-    const auto batch = static_cast<std::size_t>(lanes());
-    parallel_for(static_cast<Index>((gains.size() + batch - 1) / batch), [&](Index b) {
-      const std::size_t first = static_cast<std::size_t>(b) * batch;
-      const auto here = gains.subspan(first, std::min(batch, gains.size() - first));
+    const Index count = gains.flights();
+    std::vector<ErrorSample> samples(static_cast<std::size_t>(count));
+    const Index batch = lanes();
+    parallel_for((count + batch - 1) / batch, [&](Index b) {
+      const Index first = b * batch;
+      const FlightGains here = gains.part(first, std::min(batch, count - first));
       fly_batch(here, initial, velocities, with_slopes,
-                std::span(samples).subspan(first, here.size()));
+                std::span(samples).subspan(static_cast<std::size_t>(first)));
     });
     return samples;
   }
 
-  void fly_batch(std::span<const double> gains, const Points& initial, const Points& velocities,
+  void fly_batch(const FlightGains& gains, const Points& initial, const Points& velocities,
                  bool with_slopes, std::span<ErrorSample> samples) const {
     const Points& target = problem().target;
     const Index size = target.size();
-    const Index count = static_cast<Index>(gains.size());
+    const Index count = gains.flights();
     std::vector<double> finals(static_cast<std::size_t>(size * count));
     std::vector<double> tangents(with_slopes ? finals.size() : 0);
     fly(plan_, ReferenceMotion(problem(), time_step()), initial.data(), velocities.data(), gains,

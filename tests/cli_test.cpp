@@ -348,6 +348,34 @@ std::vector<BadCommand> bad_commands() {
       {"RobustWithALimit",
        {"optimize", s, "--robust", "--error-limit", "1"},
        "--robust: does not go with a limit"},
+      {"OneGainOfSeveralNegative", {"simulate", s, "--alpha", "1,-2,3"}, "--alpha: -2 is not >= 0"},
+      {"OneGainOfSeveralMissing",
+       {"simulate", s, "--alpha", "1,,3"},
+       "--alpha: \"\" is not a finite number"},
+      {"GainAfterTheLastComma",
+       {"simulate", s, "--alpha", "1,"},
+       "--alpha: \"\" is not a finite number"},
+      {"TooManyGains",
+       {"simulate", s, "--alpha", "1,2,3,4,5"},
+       "--alpha: \"1,2,3,4,5\" is more than 4 gains"},
+      {"NoCoefficients",
+       {"optimize", s, "--coefficients", "0"},
+       "--coefficients: 0 is not a whole number within 1 … 4"},
+      {"TooManyCoefficients",
+       {"optimize", s, "--coefficients", "5"},
+       "--coefficients: 5 is not a whole number within 1 … 4"},
+      {"HalfACoefficient",
+       {"optimize", s, "--coefficients", "1.5"},
+       "--coefficients: 1.5 is not a whole number within 1 … 4"},
+      {"CoefficientsInWords",
+       {"optimize", s, "--coefficients", "two"},
+       "--coefficients: \"two\" is not a finite number"},
+      {"CoefficientsWithALimit",
+       {"optimize", s, "--coefficients", "2", "--effort-limit", "1"},
+       "--coefficients: does not go with --robust or a limit"},
+      {"CoefficientsRobust",
+       {"optimize", s, "--coefficients", "2", "--robust"},
+       "--coefficients: does not go with --robust or a limit"},
       {"EmptyOutput", {"simulate", s, "--out", ""}, "--out: \"\" is not a name"},
       {"OutputMissing", {"compare", s, "--out"}, "--out: takes exactly one value"},
       {"NewlineInAnOption",
@@ -376,6 +404,21 @@ TEST_F(Refusal, OfAWrongOptionLeavesTheOutputAlone) {
       nuno({"simulate", scene("s-curve-32"), "--out", output("result.json"), "--alpha", "-1"});
   EXPECT_EQ(run.status, 2);
   EXPECT_EQ(read_text(output("result.json")), "precious");
+}
+
+TEST_F(Refusal, OfMoreCoefficientsThanTheClothHasModesNamesTheField) {
+  const std::string file = in_folder("small.json").string();  // of 8 particles
+  write_text(file, right_scene().dump());
+  const std::string message =
+      file + ": /particles: 8 is not >= 13, the fewest for 4 coefficients\n";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"optimize", file, "--coefficients", "4"},
+        {"simulate", file, "--alpha", "1,1,1,1"}}) {
+    const Outcome run = nuno(arguments);
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(run.err, message);
+  }
+  EXPECT_EQ(nuno({"simulate", file, "--alpha", "1,1,1"}).status, 0);
 }
 
 TEST_F(Refusal, OfASceneThatIsNotThereNamesTheFile) {
@@ -506,6 +549,41 @@ TEST_F(Output, OfAnInterruptedRunIsNotThere) {
 // Results
 
 class Result : public Program {};
+
+TEST_F(Result, OfSeveralCoefficientsCanBeFlownAgain) {
+  const std::string cloth = scene("s-curve-32");
+  for (const std::string backend : {"native", "box2d"}) {
+    const Json best = simulated({"optimize", cloth, "--backend", backend, "--coefficients", "2"});
+    const Json alphas = best["alphas"];
+    ASSERT_EQ(alphas.size(), 2u) << backend;
+    EXPECT_EQ(best["alpha"], alphas.back());
+    const Json stages = best["optimization"]["coefficients"];
+    ASSERT_EQ(stages.size(), 2u);
+    EXPECT_EQ(stages[1]["alphas"], alphas);
+    EXPECT_EQ(stages[1]["error"], best["error"]["mean"]);
+    // By half on this scene, docs/coefficients.md.
+    EXPECT_LT(stages[1]["error"], 0.6 * stages[0]["error"].get<double>());
+    EXPECT_FALSE(has_null(best));
+
+    std::string list = alphas.dump();  // [A,B]
+    list = list.substr(1, list.size() - 2);
+    const Json again = simulated({"simulate", cloth, "--backend", backend, "--alpha", list});
+    EXPECT_EQ(again["final"], best["final"]);
+    EXPECT_EQ(again["alphas"], alphas);
+  }
+}
+
+TEST_F(Result, OfSeveralCoefficientsCanBeRefined) {
+  Json arch = read_json(scene("hanging-to-arch-32"));
+  arch["reference"] = "morph";
+  arch["damping_ratio"] = 0.7;
+  write_text(in_folder("arch.json"), arch.dump());
+  const Json best =
+      simulated({"optimize", in_folder("arch.json").string(), "--coefficients", "3", "--refine"});
+  const Json optimization = best["optimization"];
+  EXPECT_EQ(optimization["refinement"]["error_before"], optimization["coefficients"][2]["error"]);
+  EXPECT_LT(best["error"]["mean"], 0.5 * optimization["coefficients"][2]["error"].get<double>());
+}
 
 TEST_F(Result, HasEveryFieldAndNoNull) {
   const Json result = simulated({"simulate", scene("s-curve-32"), "--alpha", "0.0181"});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nuno/gains.h>
 #include <nuno/problem.h>
 
 #include <memory>
@@ -44,6 +45,12 @@ struct ErrorSample {
   Points miss_slope;  ///< its derivative [2 × N], m²/N
 };
 
+/// Error at arrival under several gains, and its derivative with respect to each.
+struct ErrorGradient {
+  double error = 0;            ///< E [m]; +∞ where the rollout diverged
+  std::vector<double> slopes;  ///< dE/dα of every group [m²/N]
+};
+
 /// An engine, made ready for one problem: const, and shared by any number of threads.
 class Backend {
  public:
@@ -78,13 +85,18 @@ class Backend {
     return errors(gains, problem_.chain.initial);
   }
 
-  /// Whether the two below are there: an engine that knows its derivatives.
+  /// The same under gains by group, as many groups in all.
+  virtual std::vector<double> grouped_errors(std::span<const Gains> gains) const;
+
+  /// Whether the three below are there: an engine that knows its derivatives.
   virtual bool has_slopes() const { return false; }
   virtual std::vector<ErrorSample> error_samples(std::span<const double> gains) const;
 
-  /// Derivative of the particles' positions at arrival with respect to the problem's aim offset, at
-  /// one gain [2N × 2N], both as x₀ y₀ x₁ y₁ …; only where has_slopes.
-  virtual Eigen::MatrixXd arrival_tangent(double gain) const;
+  virtual std::vector<ErrorGradient> error_gradients(std::span<const Gains> gains) const;
+
+  /// Derivative of the particles' positions at arrival with respect to the problem's aim offset
+  /// [2N × 2N], both as x₀ y₀ x₁ y₁ …; only where has_slopes.
+  virtual Eigen::MatrixXd arrival_tangent(const Gains& gains) const;
 
  protected:
   Backend(Problem problem, Index steps) : problem_(std::move(problem)), steps_(steps) {}

@@ -36,7 +36,7 @@ struct RefineSummary {
 /// among offsets that arrive it tends to the least. `make` flies; `model`, which may be another
 /// engine, gives the tangent ∂x(t₀)/∂δ (exact for the native chain): an answer of the chain can be
 /// corrected on an engine that knows no derivative. Starts from the problem's aim offset.
-RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
+RefineSummary refine(const Problem& problem, const Gains& gains, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options = {});
 
 }  // namespace nuno

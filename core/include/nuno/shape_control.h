@@ -1,6 +1,7 @@
 #pragma once
 
-#include <nuno/points.h>
+#include <nuno/gains.h>
+#include <nuno/reference_motion.h>
 
 namespace nuno {
 
@@ -18,5 +19,32 @@ void add_shape_damping(const Points& reference_velocity, const Points& velocitie
 
 /// β = 2ζ·√(α·m) [kg/s]: damping ratio ζ of the oscillation that gain α gives a particle of mass m.
 double shape_damping(double damping_ratio, double gain, double particle_mass);
+
+/// The control force of a problem under gains that differ by group. With o what is missing of the
+/// shape, the reference about its centroid less the cloth about its own, and ȯ the same of the
+/// velocities,
+///     f = α·o + β·ȯ + Σⱼ ((αⱼ − α)·⟨φⱼ, o⟩ + (βⱼ − β)·⟨φⱼ, ȯ⟩)·φⱼ
+/// over the low modes φⱼ; α is the last group's gain and each gain has its own shape_damping β. A
+/// mode of a group feels that group's gain alone, the force sums to zero, and one group is
+/// equation (3).
+class ShapeControl {
+ public:
+  ShapeControl(const Problem& problem, const Gains& gains);
+
+  /// Whether any gain is above zero.
+  bool pulls() const { return pulls_; }
+
+  /// `forces`, positions and velocities are [2 × N].
+  void pull(const ReferenceMotion& reference, const Points& positions, const Points& velocities,
+            Points& forces) const;
+
+ private:
+  bool pulls_;
+  double gain_;     ///< of the last group
+  double damping_;  ///< of the last group
+  LowModes modes_;
+  Vector excess_gain_;     ///< αⱼ − α [modes]
+  Vector excess_damping_;  ///< βⱼ − β [modes]
+};
 
 }  // namespace nuno

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <nuno/points.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace nuno {
+
+/// The gains α of shape control [N/m], one for every group of the shape's modes.
+///
+/// Mode j = 1 … N − 1 of N particles is the cosine φⱼ(i) = √(2/N)·cos(πj·(i + ½)/N), i from 0: how
+/// a free chain of equal masses and springs swings, from its slowest wave to its fastest. Modes sum
+/// to zero over the particles, so that a gain of one's own for each still corrects shape only.
+/// Groups are modes 1–2, 3–5 and 6–11; the last group is all that are left. One group, the paper's
+/// law, is every mode alike.
+struct Gains {
+  std::vector<double> low;  ///< of the groups of low modes, from low to high; at most 3
+  double rest = 0;          ///< of the last group
+
+  /// One gain for all modes.
+  Gains(double gain) : rest(gain) {}
+
+  /// A gain for every group, the last group's last; 1 … most_groups of them.
+  static Gains of_groups(std::span<const double> groups);
+
+  std::vector<double> groups() const;
+  Index count() const { return static_cast<Index>(low.size()) + 1; }
+  double largest() const;
+
+  /// The same law in `count` groups, not fewer than now: the last gain is repeated.
+  Gains split(Index count) const;
+};
+
+/// The last mode of each group but the last.
+inline constexpr std::array<Index, 3> last_mode_of_group = {2, 5, 11};
+inline constexpr Index most_groups = static_cast<Index>(last_mode_of_group.size()) + 1;
+inline constexpr Index most_low_modes = last_mode_of_group.back();
+
+/// The fewest particles whose modes fill this many groups.
+Index fewest_particles(Index groups);
+
+/// The modes that have a gain other than the last group's, where there are `groups` groups.
+struct LowModes {
+  Points shapes;             ///< φⱼ(i) [modes × N]
+  std::vector<Index> group;  ///< of each mode, from 0
+
+  LowModes(Index particles, Index groups);
+  Index count() const { return shapes.rows(); }
+};
+
+}  // namespace nuno
