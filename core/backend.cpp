@@ -21,7 +21,7 @@ std::vector<ErrorSample> Backend::error_samples(std::span<const double>) const {
   return {};
 }
 
-Eigen::MatrixXd Backend::arrival_tangent(double) const {
+FlightTangent Backend::flight_tangent(double, const AimDirections&) const {
   assert(!"this engine has no tangent");
   return {};
 }

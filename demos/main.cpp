@@ -189,9 +189,10 @@ ExitStatus run(int argc, char** argv) {
   add_limit("--effort-limit", optimization.effort_limit,
             "The gain of least error whose control effort is at most X");
   optimize_command.add_flag("--refine", optimization.refine,
-                            "Then aim off the target until the cloth arrives on it, as near\n"
-                            "as a cloth can; best with \"reference\": \"morph\" and\n"
-                            "\"damping_ratio\": 0.7 in the scene");
+                            "Then turn the motion, and the launch along it, until the cloth\n"
+                            "arrives on the target at the least effort; with a limit, as\n"
+                            "near as the limit asks or lets. At a gain of its own; best\n"
+                            "with \"reference\": \"morph\" and \"damping_ratio\": 0.7");
   optimize_command.add_flag("--robust", optimization.robust,
                             "Prefer a gain whose answer is not fragile: the error is the mean\n"
                             "over five starts, four of them disturbed by 0.1 % of the length");

@@ -58,16 +58,26 @@ Optimization trade(const OptimizeOptions& options, const SceneFile& file, const 
   return found;
 }
 
-/// Aims off on the native chain, and then, on another engine, off what is left there.
-RefineSummary aim_off(const OptimizeOptions& options, const SceneFile& file, double gain) {
+/// Aims off on the native chain, within the limit that was asked for, and then, on another engine,
+/// off what is left there.
+RefineSummary aim_off(const OptimizeOptions& options, const SceneFile& file) {
   const MakeBackend model = backend_maker("native", file);
-  RefineSummary refined = refine(file.problem, gain, model, model);
+  const double gain = following_gain(*model(file.problem));
+  RefineOptions limits;
+  if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
+  if (options.effort_limit) limits.effort_limit = *options.effort_limit;
+  RefineSummary refined = refine(file.problem, gain, model, model, limits);
   if (options.backend == "native") return refined;
   Problem aimed = file.problem;
   aimed.aim_offset = refined.aim_offset;
   constexpr double single_precision = 1e-5;
-  RefineSummary corrected = refine(aimed, gain, backend_maker(options.backend, file), model,
-                                   {.tolerance = single_precision, .rounds = 4});
+  limits.tolerance = std::max(limits.tolerance, single_precision);
+  limits.rounds = 4;
+  if (options.effort_limit)
+    limits.tolerance =
+        std::max(limits.tolerance, refined.flight.error.mean / file.problem.chain.length);
+  RefineSummary corrected =
+      refine(aimed, gain, backend_maker(options.backend, file), model, limits);
   corrected.rollouts += refined.rollouts;
   corrected.tangents += refined.tangents;
   corrected.seconds += refined.seconds;
@@ -91,9 +101,10 @@ ExitStatus optimize(const OptimizeOptions& options) {
                            ? trade(options, file, *backend)
                            : search(options, file, *backend);
   clear_progress();
-  const double gain = found.summary.gain;
+  double gain = found.summary.gain;
   if (options.refine) {
-    found.refinement = aim_off(options, file, gain);
+    found.refinement = aim_off(options, file);
+    gain = found.refinement->flight.gain;
     file.problem.aim_offset = found.refinement->aim_offset;
     backend = make_backend(options.backend, file);
   }
@@ -121,7 +132,7 @@ ExitStatus optimize(const OptimizeOptions& options) {
              search.status == OptimizeStatus::budget ? ", not reached" : "", search.reason);
   if (found.refinement) {
     fmt::print(summary, "  {:<17} from {:.4g} % in {} rollouts and {} tangents, {}: {}\n",
-               "aiming off", percent * search.error, found.refinement->rollouts,
+               "aiming off", percent * found.refinement->error_before, found.refinement->rollouts,
                found.refinement->tangents, duration(found.refinement->seconds),
                found.refinement->reason);
   }

@@ -598,8 +598,24 @@ TEST_F(Result, OfAimingOffIsNearerAndSaysWhereItAimed) {
   const Json refined = simulated({"optimize", n, "--refine"});
   EXPECT_LT(refined["error"]["mean"].get<double>(), 0.5 * plain["error"]["mean"].get<double>());
   const Json& refinement = refined["optimization"]["refinement"];
-  EXPECT_EQ(refinement["aim_offset"].size(), refined["final"].size());
-  EXPECT_EQ(refinement["error_before"], plain["error"]["mean"]);
+  ASSERT_EQ(refinement["aim_offset"].size(), 4u);
+  for (const Json& offset : refinement["aim_offset"]) {
+    EXPECT_EQ(offset.size(), refined["final"].size());
+  }
+  const Json before = simulated({"simulate", n, "--alpha", Json(refined["alpha"]).dump()});
+  EXPECT_EQ(refinement["error_before"], before["error"]["mean"]);
+}
+
+TEST_F(Result, OfAimingOffKeepsTheLimitThatWasAskedFor) {
+  const std::string n = (scenes / "nuno" / "n1.json").string();
+  const Json exact = simulated({"optimize", n, "--refine"});
+  const double effort = 0.5 * exact["control_effort"].get<double>();
+  const Json cheap = simulated({"optimize", n, "--refine", "--effort-limit", Json(effort).dump()});
+  EXPECT_LE(cheap["control_effort"].get<double>(), effort);
+  EXPECT_GT(cheap["control_effort"].get<double>(), 0.9 * effort);
+  const Json near = simulated({"optimize", n, "--refine", "--error-limit", "0.01"});
+  EXPECT_LE(near["error"]["relative"].get<double>(), 0.01);
+  EXPECT_LT(near["control_effort"].get<double>(), exact["control_effort"].get<double>());
 }
 
 TEST_F(Result, OfOptimizeIsTheRolloutThatSimulateGivesAtItsGain) {
