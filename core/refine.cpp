@@ -1,5 +1,6 @@
 #include <nuno/refine.h>
 
+#include <nuno/feasibility.h>
 #include <nuno/optimize.h>
 #include <nuno/reference_motion.h>
 
@@ -10,6 +11,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -151,6 +153,13 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
   if (problem.aim_offset.empty()) {
     weight = std::min(weight, std::isfinite(options.effort_limit) ? 1.0 : 30.0);
   }
+  // A cloth that is too long or too short for a segment of the target can be squeezed towards it
+  // without end; there, an error of 1e-4·L is worth a particle's weight and no more.
+  constexpr double reachable_mismatch = 1e-6;
+  const bool within_reach = assess(*make(aimed)).length_mismatch <= reachable_mismatch;
+  const double largest_weight = within_reach || std::isfinite(options.effort_limit)
+                                    ? std::numeric_limits<double>::infinity()
+                                    : 1e4;
   double growth = 4;
   constexpr double least_damping = 1e-3, most_damping = 10;
   double damping = least_damping;
@@ -159,6 +168,11 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
     if (summary.flight.error.mean <= options.tolerance * length) break;
     if (summary.flight.status == RolloutStatus::diverged) {
       summary.reason = "the flight diverged";
+      break;
+    }
+    if (weight > largest_weight) {
+      summary.reason =
+          "the cloth's segments do not fit the target's; this is as near as is worth it";
       break;
     }
     if (!near) {

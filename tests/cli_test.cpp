@@ -596,7 +596,8 @@ TEST_F(Result, OfAimingOffIsNearerAndSaysWhereItAimed) {
   const std::string n = (scenes / "nuno" / "n1.json").string();
   const Json plain = simulated({"optimize", n});
   const Json refined = simulated({"optimize", n, "--refine"});
-  EXPECT_LT(refined["error"]["mean"].get<double>(), 0.5 * plain["error"]["mean"].get<double>());
+  EXPECT_LT(refined["error"]["mean"].get<double>(), 0.7 * plain["error"]["mean"].get<double>());
+  EXPECT_LT(refined["control_effort"].get<double>(), plain["control_effort"].get<double>());
   const Json& refinement = refined["optimization"]["refinement"];
   ASSERT_EQ(refinement["aim_offset"].size(), 4u);
   for (const Json& offset : refinement["aim_offset"]) {
@@ -612,7 +613,7 @@ TEST_F(Result, OfAimingOffKeepsTheLimitThatWasAskedFor) {
   const double effort = 0.5 * exact["control_effort"].get<double>();
   const Json cheap = simulated({"optimize", n, "--refine", "--effort-limit", Json(effort).dump()});
   EXPECT_LE(cheap["control_effort"].get<double>(), effort);
-  EXPECT_GT(cheap["control_effort"].get<double>(), 0.9 * effort);
+  EXPECT_GT(cheap["control_effort"].get<double>(), 0.8 * effort);
   const Json near = simulated({"optimize", n, "--refine", "--error-limit", "0.01"});
   EXPECT_LE(near["error"]["relative"].get<double>(), 0.01);
   EXPECT_LT(near["control_effort"].get<double>(), exact["control_effort"].get<double>());
