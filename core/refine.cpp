@@ -224,6 +224,10 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
   }
   summary.converged = summary.flight.error.mean <= options.tolerance * length;
   if (summary.converged) summary.reason = "arrived within the tolerance";
+  if (summary.flight.control_effort > options.effort_limit) {
+    summary.converged = false;
+    summary.reason = "no flight of so little effort was found";
+  }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return summary;
 }

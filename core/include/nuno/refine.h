@@ -13,7 +13,8 @@ using MakeBackend = std::function<std::unique_ptr<Backend>(const Problem&)>;
 
 struct RefineOptions {
   double tolerance = 1e-9;  ///< mean distance at arrival that is near enough, over L, > 0
-  /// Control effort that must not be exceeded (see Rollout); then the error is the least for it.
+  /// Control effort that must not be exceeded (see Rollout); then the error is the least for it. A
+  /// flight that takes more although it has been lowered is given with its reason.
   double effort_limit = std::numeric_limits<double>::infinity();
   Index rounds = 60;  ///< flights at most, ≥ 1
 };
