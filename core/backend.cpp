@@ -35,7 +35,7 @@ std::vector<ErrorGradient> Backend::error_gradients(std::span<const Gains>) cons
   return {};
 }
 
-Eigen::MatrixXd Backend::arrival_tangent(const Gains&) const {
+FlightTangent Backend::flight_tangent(double, const AimDirections&) const {
   assert(!"this engine has no tangent");
   return {};
 }

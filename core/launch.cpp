@@ -83,8 +83,11 @@ Points launch(const Backend& backend) {
   const Problem& problem = backend.problem();
   Points velocities = ballistic_launch(problem.chain.initial, problem.target, problem.chain.gravity,
                                        backend.drag_recurrence(), backend.steps());
-  if (const ReferenceMotion motion(problem, backend.time_step()); motion.moves()) {
+  const ReferenceMotion motion(problem, backend.time_step());
+  if (motion.moves()) {
     velocities = motion.velocity().colwise() + centroid(velocities);
+  } else {
+    velocities += motion.velocity();  // of what it aims aside
   }
   return problem.launch == Launch::inextensible
              ? without_stretching(problem.chain.initial, velocities)

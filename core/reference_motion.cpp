@@ -38,24 +38,28 @@ void turn(Points& vectors, const Points& rotation) {
   }
 }
 
-/// w = s¹⁶: a correction late on the way. What it has to change is what the end is like, and the
-/// later a force comes the less of it is spent; but the slow bending of the cloth takes its time.
-double aim_share_at(double progress) {
-  const double s4 = std::pow(progress * progress, 2);
-  return std::pow(s4 * s4, 2);
+AimShares aim_shares_at(double time) {
+  AimShares shares;
+  for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = std::pow(time, aim_powers[k]);
+  return shares;
 }
 
 }  // namespace
 
 ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
-    : moves_(problem.reference == Reference::morph), time_step_(time_step) {
+    : moves_(problem.reference == Reference::morph),
+      time_step_(time_step),
+      step_time_(time_step / problem.arrival_time) {
   const Points& initial = problem.chain.initial;
-  if (problem.aim_offset.size() > 0) offset_ = shape_of(problem.aim_offset);
+  for (const Points& offset : problem.aim_offset) offsets_.push_back(shape_of(offset));
+  for (std::size_t k = 0; k < aim_powers.size(); ++k) {
+    aim_rates_[k] = aim_powers[k] == 1 ? 1 / problem.arrival_time : 0;
+  }
   if (!moves_) {
-    aim_share_ = 1;
-    shape_ = shape_of(problem.target);
-    if (offset_.size() > 0) shape_ += offset_;
-    velocity_ = Points::Zero(shape_.rows(), shape_.cols());
+    held_ = shape_of(problem.target);
+    place_shape();
+    velocity_ = Points::Zero(2, held_.cols());
+    add_aim(aim_rates_, velocity_);
     return;
   }
   const Vector from = unwrapped_directions(initial);
@@ -68,7 +72,7 @@ ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
 
   // s after n steps of u = h/t₀ each: n·u, or n·u·(2 − n·u). A step adds u·(2 − (2n + 1)·u) there,
   // 2u² less each time.
-  const double u = time_step / problem.arrival_time;
+  const double u = step_time_;
   const bool settles = problem.arrival == Arrival::settle;
   step_progress_ = settles ? u * (2 - u) : u;
   step_change_ = settles ? -2 * u * u : 0;
@@ -86,31 +90,46 @@ ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
         velocity_.col(i) + rate * (length_change_[i] * along + change[i] * length_[i] * across);
   }
   velocity_ = shape_of(velocity_);
+  add_aim(aim_rates_, velocity_);
 }
 
 void ReferenceMotion::advance() {
-  if (!moves_) return;
+  time_ += step_time_;
+  const AimShares shares = aim_shares_at(time_);
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    aim_rates_[k] = (shares[k] - aim_shares_[k]) / time_step_;
+  }
+  aim_shares_ = shares;
+  if (!moves_ && offsets_.empty()) return;
+
   const Points before = shape_;
-  progress_ += step_progress_;
-  const double share = aim_share_at(progress_);
-  aim_rate_ = (share - aim_share_) / time_step_;
-  aim_share_ = share;
-  step_progress_ += step_change_;
-  turn(direction_, turn_);
-  turn(turn_, turn_change_);
+  if (moves_) {
+    progress_ += step_progress_;
+    step_progress_ += step_change_;
+    turn(direction_, turn_);
+    turn(turn_, turn_change_);
+  }
   place_shape();
   velocity_ = (shape_ - before) / time_step_;
 }
 
 void ReferenceMotion::place_shape() {
-  shape_.resize(2, length_.size() + 1);
-  shape_.col(0).setZero();
-  for (Index i = 0; i < length_.size(); ++i) {
-    shape_.col(i + 1) =
-        shape_.col(i) + (length_[i] + progress_ * length_change_[i]) * direction_.col(i);
+  if (moves_) {
+    shape_.resize(2, length_.size() + 1);
+    shape_.col(0).setZero();
+    for (Index i = 0; i < length_.size(); ++i) {
+      shape_.col(i + 1) =
+          shape_.col(i) + (length_[i] + progress_ * length_change_[i]) * direction_.col(i);
+    }
+    shape_ = shape_of(shape_);
+  } else {
+    shape_ = held_;
   }
-  shape_ = shape_of(shape_);
-  if (offset_.size() > 0) shape_ += aim_share_ * offset_;
+  add_aim(aim_shares_, shape_);
+}
+
+void ReferenceMotion::add_aim(const AimShares& shares, Points& to) const {
+  for (std::size_t k = 0; k < offsets_.size(); ++k) to += shares[k] * offsets_[k];
 }
 
 }  // namespace nuno

@@ -1,76 +1,233 @@
 #include <nuno/refine.h>
 
+#include <nuno/feasibility.h>
+#include <nuno/optimize.h>
+#include <nuno/reference_motion.h>
+
 #include <fmt/format.h>
 
-#include <Eigen/QR>
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
 
 namespace nuno {
+namespace {
 
-RefineSummary refine(const Problem& problem, const Gains& gains, const MakeBackend& make,
+/// Shapes to aim aside by: cosines along the chain, of few waves where they come early and must not
+/// stretch the cloth on its way, and all of them at the last, where it has to arrive.
+AimDirections aim_directions(Index particles) {
+  constexpr std::array<Index, aim_powers.size()> most_waves = {8, 8, 16, 1'000'000};
+  AimDirections directions;
+  std::vector<Vector> shapes;
+  for (std::size_t power = 0; power < aim_powers.size(); ++power) {
+    for (Index wave = 1; wave <= std::min(most_waves[power], particles - 1); ++wave) {
+      for (const Index row : {0, 1}) {
+        Points shape = Points::Zero(2, particles);
+        for (Index i = 0; i < particles; ++i) {
+          shape(row, i) = std::cos(std::numbers::pi * static_cast<double>(wave) *
+                                   (static_cast<double>(i) + 0.5) / static_cast<double>(particles));
+        }
+        directions.powers.push_back(static_cast<Index>(power));
+        shapes.push_back(shape.reshaped());
+      }
+    }
+  }
+  directions.shapes.resize(2 * particles, static_cast<Index>(shapes.size()));
+  for (std::size_t d = 0; d < shapes.size(); ++d) {
+    directions.shapes.col(static_cast<Index>(d)) = shapes[d];
+  }
+  return directions;
+}
+
+std::vector<Points> moved(std::vector<Points> offset, const AimDirections& directions,
+                          const Vector& step) {
+  for (Index d = 0; d < step.size(); ++d) {
+    Points& of_power =
+        offset[static_cast<std::size_t>(directions.powers[static_cast<std::size_t>(d)])];
+    of_power += step[d] * directions.shapes.col(d).reshaped(2, of_power.cols());
+  }
+  return offset;
+}
+
+/// The flight in a neighbourhood: forces F + F'Δ, positions at arrival by X'. Every step minimises
+///     |F + F'(Δ + δ)|² + w²·|miss − X'δ|² + μ²·|δ|²,
+/// so, with H = F'ᵀF' + μ²I and g = F'ᵀ(F + F'Δ),
+///     δ = H⁻¹(X'ᵀλ − g),   (X'H⁻¹X'ᵀ + w⁻²)·λ = miss + X'H⁻¹g,
+/// which stays well-conditioned as w grows and arrival becomes a condition.
+class Neighbourhood {
+ public:
+  explicit Neighbourhood(FlightTangent tangent)
+      : tangent_(std::move(tangent)),
+        hessian_(Eigen::MatrixXd::Zero(tangent_.arrival.cols(), tangent_.arrival.cols())),
+        path_(Vector::Zero(tangent_.arrival.cols())) {
+    hessian_.selfadjointView<Eigen::Lower>().rankUpdate(tangent_.forces_tangent.transpose());
+  }
+
+  bool is_finite() const { return hessian_.allFinite() && tangent_.arrival.allFinite(); }
+  bool is_fresh() const { return path_.isZero(0); }
+
+  /// `damping` is μ over the size of F'.
+  void set_damping(double damping) {
+    Eigen::MatrixXd damped = hessian_;
+    damped.diagonal().array() += damping * damping * hessian_.diagonal().maxCoeff();
+    factor_.compute(damped);
+    across_ = factor_.solve(tangent_.arrival.transpose());
+    reach_ = tangent_.arrival * across_;
+  }
+
+  Vector step(const Vector& miss, double weight) const {
+    const Vector down = factor_.solve(tangent_.forces_tangent.transpose() * forces(path_));
+    Eigen::MatrixXd system = reach_;
+    system.diagonal().array() += 1 / (weight * weight);
+    const Vector pull = system.ldlt().solve(miss + tangent_.arrival * down);
+    return across_ * pull - down;
+  }
+
+  /// By how much a step lets the objective fall.
+  double promise(const Vector& miss, double weight, const Vector& step) const {
+    const auto cost = [&](const Vector& path, const Vector& left) {
+      return forces(path).squaredNorm() + weight * weight * left.squaredNorm();
+    };
+    return cost(path_, miss) - cost(path_ + step, miss - tangent_.arrival * step);
+  }
+
+  void go(const Vector& step) { path_ += step; }
+
+ private:
+  Vector forces(const Vector& path) const {
+    return tangent_.forces + tangent_.forces_tangent * path;
+  }
+
+  FlightTangent tangent_;
+  Eigen::MatrixXd hessian_;             // F'ᵀF', lower half
+  Vector path_;                         // Δ
+  Eigen::LLT<Eigen::MatrixXd> factor_;  // of H
+  Eigen::MatrixXd across_;              // H⁻¹X'ᵀ
+  Eigen::MatrixXd reach_;               // X'H⁻¹X'ᵀ
+};
+
+}  // namespace
+
+double following_gain(const Backend& backend) {
+  // √300 = 17 rad until arrival: what the launch leaves behind has died away by then, and nothing
+  // that the engines see differently grows.
+  constexpr double gain_scales = 300;
+  const Objective range = objective(backend);
+  return std::min(gain_scales * range.gain_scale, range.largest_gain);
+}
+
+RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   const Index particles = problem.chain.particles();
+  const double length = problem.chain.length;
   Problem aimed = problem;
-  if (aimed.aim_offset.size() == 0) aimed.aim_offset = Points::Zero(2, particles);
+  if (aimed.aim_offset.empty()) {
+    aimed.aim_offset.assign(aim_powers.size(), Points::Zero(2, particles));
+  }
 
   RefineSummary summary;
   summary.aim_offset = aimed.aim_offset;
-  summary.flight = rollout(*make(aimed), gains);
+  summary.flight = rollout(*make(aimed), gain);
   summary.rollouts = 1;
   summary.error_before = summary.flight.error.mean;
   summary.reason = fmt::format("{} rounds were not enough", options.rounds);
 
-  const double near_enough = options.tolerance * problem.chain.length;
-  double lambda = 1e-1;  // over the tangent's size
+  const AimDirections directions = aim_directions(particles);
+  const auto miss_of = [&](const Rollout& flight) -> Vector {
+    return (problem.target - flight.final).reshaped();
+  };
+  // w = weight/(L·√N): an rms error of L counts as much as an effort of `weight`.
+  const double unit = 1 / (length * std::sqrt(static_cast<double>(particles)));
+  const auto objective = [&](const Rollout& flight, double weight) {
+    return flight.control_effort * flight.control_effort +
+           std::pow(weight * unit, 2) * miss_of(flight).squaredNorm();
+  };
+  // An answer of before is corrected where it stands; a new one starts where effort counts.
+  double weight = summary.flight.control_effort * length / summary.flight.error.mean;
+  if (problem.aim_offset.empty()) {
+    weight = std::min(weight, std::isfinite(options.effort_limit) ? 1.0 : 30.0);
+  }
+  // A cloth that is too long or too short for a segment of the target can be squeezed towards it
+  // without end; there, an error of 1e-4·L is worth a particle's weight and no more.
+  constexpr double reachable_mismatch = 1e-6;
+  const bool within_reach = assess(*make(aimed)).length_mismatch <= reachable_mismatch;
+  const double largest_weight = within_reach || std::isfinite(options.effort_limit)
+                                    ? std::numeric_limits<double>::infinity()
+                                    : 1e4;
+  double growth = 4;
+  constexpr double least_damping = 1e-3, most_damping = 10;
+  double damping = least_damping;
+  std::optional<Neighbourhood> near;
   for (Index round = 0; round < options.rounds; ++round) {
-    if (summary.flight.error.mean <= near_enough) break;
+    if (summary.flight.error.mean <= options.tolerance * length) break;
     if (summary.flight.status == RolloutStatus::diverged) {
       summary.reason = "the flight diverged";
       break;
     }
-    aimed.aim_offset = summary.aim_offset;
-    const Eigen::MatrixXd tangent = model(aimed)->arrival_tangent(gains);
-    ++summary.tangents;
-    if (!tangent.allFinite()) {
-      summary.reason = "the tangent is not finite";
+    if (weight > largest_weight) {
+      summary.reason =
+          "the cloth's segments do not fit the target's; this is as near as is worth it";
       break;
     }
-    const Points miss = problem.target - summary.flight.final;
-    const double size = tangent.colwise().norm().maxCoeff();
-    // [tangent; λ] δ = [miss; 0] in the least squares: the normal equations would square the
-    // condition, and tension's part of the tangent is small.
-    Eigen::MatrixXd rows(2 * tangent.rows(), tangent.cols());
-    rows.topRows(tangent.rows()) = tangent;
-    Vector right = Vector::Zero(rows.rows());
-    right.head(tangent.rows()) = miss.reshaped();
-
-    const double before = miss.norm();
-    double after = before;
-    for (int attempt = 0; attempt < 8; ++attempt) {
-      rows.bottomRows(tangent.cols()).setZero();
-      rows.bottomRows(tangent.cols()).diagonal().setConstant(lambda * size);
-      const Vector step = rows.householderQr().solve(right);
-      aimed.aim_offset = summary.aim_offset + step.reshaped(2, particles);
-      Rollout flight = rollout(*make(aimed), gains);
-      ++summary.rollouts;
-      after = (problem.target - flight.final).norm();
-      if (after < before) {
-        summary.flight = std::move(flight);
-        summary.aim_offset = aimed.aim_offset;
-        lambda = std::max(1e-9, 0.1 * lambda);
+    if (!near) {
+      aimed.aim_offset = summary.aim_offset;
+      near.emplace(model(aimed)->flight_tangent(gain, directions));
+      ++summary.tangents;
+      if (!near->is_finite()) {
+        summary.reason = "the tangent is not finite";
         break;
       }
-      lambda *= 10;
+      near->set_damping(damping);
     }
-    if (!(after < (1 - options.least_gain) * before)) {
+    const Vector miss = miss_of(summary.flight);
+    const Vector step = near->step(miss, weight * unit);
+    aimed.aim_offset = moved(summary.aim_offset, directions, step);
+    Rollout flight = rollout(*make(aimed), gain);
+    ++summary.rollouts;
+    const double kept = (objective(summary.flight, weight) - objective(flight, weight)) /
+                        near->promise(miss, weight * unit, step);
+    if (kept > 0.1) {
+      const bool within = summary.flight.control_effort <= options.effort_limit;
+      if (within && flight.control_effort > options.effort_limit) {
+        if (growth < 1.05) {
+          summary.reason = "more would take more effort than the limit";
+          break;
+        }
+        weight /= growth;
+        growth = std::sqrt(growth);
+        weight *= growth;
+        continue;
+      }
+      near->go(step);
+      summary.flight = std::move(flight);
+      summary.aim_offset = aimed.aim_offset;
+      if (within || summary.flight.control_effort <= options.effort_limit) weight *= growth;
+      if (kept < 0.5) {
+        near.reset();
+      } else if (damping > least_damping) {
+        near->set_damping(damping = std::max(least_damping, 0.3 * damping));
+      }
+    } else if (!near->is_fresh()) {
+      near.reset();
+    } else if (damping < most_damping) {
+      near->set_damping(damping *= 10);
+    } else {
       summary.reason = "no offset brings it nearer";
       break;
     }
   }
-  summary.converged = summary.flight.error.mean <= near_enough;
+  summary.converged = summary.flight.error.mean <= options.tolerance * length;
   if (summary.converged) summary.reason = "arrived within the tolerance";
+  if (summary.flight.control_effort > options.effort_limit) {
+    summary.converged = false;
+    summary.reason = "no flight of so little effort was found";
+  }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return summary;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace nuno {
 namespace {
@@ -120,7 +121,7 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
   return backend;
 }
 
-RefineSummary aim_off(std::string_view name, const SceneFile& file, const Gains& gains,
+RefineSummary aim_off(std::string_view name, const SceneFile& file, RefineOptions options,
                       const std::function<void()>& before_rollout) {
   const auto maker = [&](std::string_view engine) -> MakeBackend {
     return [&, make = backend_maker(engine, file)](const Problem& problem) {
@@ -129,13 +130,20 @@ RefineSummary aim_off(std::string_view name, const SceneFile& file, const Gains&
     };
   };
   const MakeBackend model = maker("native");
-  RefineSummary refined = refine(file.problem, gains, model, model);
+  const double gain = following_gain(*model(file.problem));
+  RefineSummary refined = refine(file.problem, gain, model, model, options);
   if (name == "native") return refined;
   Problem aimed = file.problem;
   aimed.aim_offset = refined.aim_offset;
   constexpr double single_precision = 1e-5;
-  RefineSummary corrected =
-      refine(aimed, gains, maker(name), model, {.tolerance = single_precision, .rounds = 4});
+  options.tolerance = std::max(options.tolerance, single_precision);
+  if (std::isfinite(options.effort_limit)) {
+    // What lies within it is as far as it goes.
+    options.tolerance =
+        std::max(options.tolerance, refined.flight.error.mean / file.problem.chain.length);
+  }
+  options.rounds = 4;
+  RefineSummary corrected = refine(aimed, gain, maker(name), model, options);
   corrected.rollouts += refined.rollouts;
   corrected.tangents += refined.tangents;
   corrected.seconds += refined.seconds;

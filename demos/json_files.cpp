@@ -80,12 +80,14 @@ Json to_json(const Optimization& optimization) {
   }
   if (optimization.refinement) {
     const RefineSummary& refinement = *optimization.refinement;
+    Json aim_offset = Json::array();
+    for (const Points& offset : refinement.aim_offset) aim_offset.push_back(to_json(offset));
     result["refinement"] = {{"status", refinement.converged ? "converged" : "nearest"},
                             {"error_before", refinement.error_before},
                             {"rollouts", refinement.rollouts},
                             {"tangents", refinement.tangents},
                             {"seconds", refinement.seconds},
-                            {"aim_offset", to_json(refinement.aim_offset)}};
+                            {"aim_offset", aim_offset}};
   }
   return result;
 }

@@ -234,8 +234,10 @@ ExitStatus run(int argc, char** argv) {
       ->type_name("K")
       ->default_str(fmt::format("{}", optimization.coefficients));
   optimize_command.add_flag("--refine", optimization.refine,
-                            "Then aim off the target until the cloth arrives on it, as near\n"
-                            "as a cloth can; best with a damped \"morph\", see below");
+                            "Then turn the motion, and the launch along it, until the cloth\n"
+                            "arrives on the target at the least effort; with a limit, as\n"
+                            "near as the limit asks or lets. At a gain of its own; best\n"
+                            "with a damped \"morph\", see below");
   optimize_command.add_flag("--robust", optimization.robust,
                             "Prefer a gain whose answer is not fragile: the error is the mean\n"
                             "over five starts, four of them disturbed by 0.1 % of the length");
@@ -253,6 +255,10 @@ ExitStatus run(int argc, char** argv) {
     if (optimization.coefficients > 1 &&
         (optimization.robust || optimization.error_limit || optimization.effort_limit)) {
       throw CLI::ValidationError("--coefficients", "does not go with --robust or a limit");
+    }
+    if (optimization.refine && (optimization.robust || optimization.coefficients > 1)) {
+      throw CLI::ValidationError(
+          "--refine", "does not go with --coefficients or --robust, it has a gain of its own");
     }
     chosen = [&] { return optimize(optimization); };
   });

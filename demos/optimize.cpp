@@ -81,7 +81,11 @@ ExitStatus optimize(const OptimizeOptions& options) {
   }
   clear_progress();
   if (options.refine) {
-    found.refinement = aim_off(options.backend, file, gains);
+    RefineOptions limits;
+    if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
+    if (options.effort_limit) limits.effort_limit = *options.effort_limit;
+    found.refinement = aim_off(options.backend, file, limits);
+    gains = found.refinement->flight.gain;
     file.problem.aim_offset = found.refinement->aim_offset;
     backend = make_backend(options.backend, file);
   }
@@ -106,7 +110,7 @@ ExitStatus optimize(const OptimizeOptions& options) {
   }
   if (found.refinement) {
     fmt::print(summary, "  {:<17} from {:.4g} % in {} rollouts and {} tangents, {}: {}\n",
-               "aiming off", percent * error, found.refinement->rollouts,
+               "aiming off", percent * found.refinement->error_before, found.refinement->rollouts,
                found.refinement->tangents, duration(found.refinement->seconds),
                found.refinement->reason);
   }

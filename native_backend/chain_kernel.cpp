@@ -440,11 +440,10 @@ auto flight_of(const ChainPlan& plan, const FlightGains& gains) {
 /// The number whose value is the same in every lane and whose slope differs.
 HWY_INLINE Dual<Pack> with_slopes(double value, Pack slope) { return {Pack(value), slope}; }
 
-template <Control control>
+template <bool damped_control>
 void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* initial,
-                     const double* launch_velocity, const FlightGains& gains,
-                     const double* aim_directions, Index count, double* tangents) {
-  constexpr bool damped_control = control != Control::springs;
+                     const double* launch_velocity, double gain, const Directions& directions,
+                     std::span<const Index> samples, const Tangents& tangents) {
   using T = Dual<Pack>;
   const Index n = plan.particles;
   const auto size = static_cast<std::size_t>(n);
@@ -452,82 +451,93 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
   const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<Pack>[]> aim(new Vec2<Pack>[size]);
   const std::unique_ptr<Segment<T>[]> segments(new Segment<T>[size]);
-  // One coordinate of all directions, a direction a lane.
-  const auto across = [&](const double* directions, Index coordinate) NUNO_INLINE_LAMBDA {
+  // A value of each direction, a direction a lane.
+  const auto across = [&](auto value_of) NUNO_INLINE_LAMBDA {
     double values[HWY_MAX_BYTES / sizeof(double)] = {};
-    for (Index lane = 0; lane < count; ++lane) {
-      values[lane] = directions[lane * 2 * n + coordinate];
-    }
+    for (Index lane = 0; lane < directions.count; ++lane) values[lane] = value_of(lane);
     return load_lanes(values, Pack());
+  };
+  const auto coordinate = [&](const double* shapes, Index at) NUNO_INLINE_LAMBDA {
+    return across([=](Index lane) NUNO_INLINE_LAMBDA { return shapes[lane * 2 * n + at]; });
+  };
+  const auto of_power = [&](const AimShares& shares) NUNO_INLINE_LAMBDA {
+    return across([&](Index lane) NUNO_INLINE_LAMBDA {
+      return shares[static_cast<std::size_t>(directions.powers[lane])];
+    });
   };
   const T zero = Constant<T>::of(0);
   Sums<T> sums{{zero, zero}, {zero, zero}};
   for (Index i = n; i-- > 0;) {
-    aim[i] = {across(aim_directions, 2 * i), across(aim_directions, 2 * i + 1)};
+    aim[i] = {coordinate(directions.shapes, 2 * i), coordinate(directions.shapes, 2 * i + 1)};
     x[i] = {Constant<T>::of(initial[2 * i]), Constant<T>::of(initial[2 * i + 1])};
-    v[i] = {Constant<T>::of(launch_velocity[2 * i]), Constant<T>::of(launch_velocity[2 * i + 1])};
+    v[i] = {with_slopes(launch_velocity[2 * i], coordinate(directions.launches, 2 * i)),
+            with_slopes(launch_velocity[2 * i + 1], coordinate(directions.launches, 2 * i + 1))};
     sums.position = sums.position + x[i];
     sums.velocity = sums.velocity + v[i];
   }
 
-  const double gain = gains.values.back();
   const double damping = shape_damping(plan.damping_ratio, gain, plan.particle_mass);
-  LowModePull<T> low_modes;
-  if constexpr (control == Control::grouped) low_modes.prepare(plan, gains);
   const T particles = Constant<T>::of(static_cast<double>(n));
+  const Index sampled = static_cast<Index>(samples.size());
+  Index sample = 0;
   for (Index step = 0; step < plan.steps; ++step) {
     const double* shape = reference.shape().data();
     const double* motion = reference.velocity().data();
-    const Pack share(reference.aim_share());
-    const Pack rate(reference.aim_rate());
+    const Pack share = of_power(reference.aim_shares());
+    const Pack rate = of_power(reference.aim_rates());
+    const bool keeps = sample < sampled && samples[static_cast<std::size_t>(sample)] == step;
     const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
     const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
-    const auto offset = [&](Index j, const Vec2<T>& position) NUNO_INLINE_LAMBDA {
-      const Vec2<T> place{with_slopes(shape[2 * j], share * aim[j].x),
-                          with_slopes(shape[2 * j + 1], share * aim[j].y)};
-      return place + (center - position);
-    };
-    const auto lag = [&](Index j, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
-      const Vec2<T> speed{with_slopes(motion[2 * j], rate * aim[j].x),
-                          with_slopes(motion[2 * j + 1], rate * aim[j].y)};
-      return speed + (drift - velocity);
-    };
-    if constexpr (control == Control::grouped) {
-      low_modes.project(
-          n, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
-          [&](Index j) NUNO_INLINE_LAMBDA { return lag(j, v[j]); });
-    }
     sums = advance<damped_control>(
         plan, step == 0, x.get(), v.get(), segments.get(),
         [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
-          const Vec2<T> miss = offset(j, position);
+          const Vec2<T> place{with_slopes(shape[2 * j], share * aim[j].x),
+                              with_slopes(shape[2 * j + 1], share * aim[j].y)};
+          const Vec2<T> miss = place + (center - position);
           Vec2<T> force{scale(gain, miss.x), scale(gain, miss.y)};
           if constexpr (damped_control) {
-            const Vec2<T> late = lag(j, velocity);
-            force = force + Vec2<T>{scale(damping, late.x), scale(damping, late.y)};
+            const Vec2<T> speed{with_slopes(motion[2 * j], rate * aim[j].x),
+                                with_slopes(motion[2 * j + 1], rate * aim[j].y)};
+            const Vec2<T> lag = speed + (drift - velocity);
+            force = force + Vec2<T>{scale(damping, lag.x), scale(damping, lag.y)};
           }
-          if constexpr (control == Control::grouped) force = low_modes.add_to(force, j);
+          if (keeps) {
+            const Index at = 2 * (sample * n + j);
+            const Index stride = 2 * n * sampled;
+            if (tangents.forces != nullptr) {
+              write_lanes(force.x.value, tangents.forces + at, nullptr, 0, 1);
+              write_lanes(force.y.value, tangents.forces + at + 1, nullptr, 0, 1);
+            }
+            double* slopes = tangents.forces_tangent + at;
+            write_lanes(force.x.slope, slopes, nullptr, stride, directions.count);
+            write_lanes(force.y.slope, slopes + 1, nullptr, stride, directions.count);
+          }
           return force;
         });
+    if (keeps) ++sample;
     reference.advance();
   }
   for (Index i = 0; i < n; ++i) {
-    write_lanes(x[i].x.slope, tangents + 2 * i, nullptr, 2 * n, count);
-    write_lanes(x[i].y.slope, tangents + 2 * i + 1, nullptr, 2 * n, count);
+    double* slopes = tangents.arrival + 2 * i;
+    write_lanes(x[i].x.slope, slopes, nullptr, 2 * n, directions.count);
+    write_lanes(x[i].y.slope, slopes + 1, nullptr, 2 * n, directions.count);
   }
 }
 
 void fly_along_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-                   const double* launch_velocity, const FlightGains& gains,
-                   const double* aim_directions, Index count, double* tangents) {
-  const bool damped = plan.damping_ratio > 0 && gains.values.back() > 0;
-  const auto flight = gains.low_modes != nullptr ? fly_along_lanes<Control::grouped>
-                      : damped                   ? fly_along_lanes<Control::damped>
-                                                 : fly_along_lanes<Control::springs>;
-  for (Index first = 0; first < count; first += lanes_of(Pack())) {
-    const Index skip = first * 2 * plan.particles;
-    flight(plan, reference, initial, launch_velocity, gains, aim_directions + skip,
-           std::min(lanes_of(Pack()), count - first), tangents + skip);
+                   const double* launch_velocity, double gain, const Directions& directions,
+                   std::span<const Index> samples, const Tangents& tangents) {
+  const auto flight =
+      plan.damping_ratio > 0 && gain > 0 ? fly_along_lanes<true> : fly_along_lanes<false>;
+  const Index size = 2 * plan.particles;
+  const Index forces = size * static_cast<Index>(samples.size());
+  for (Index first = 0; first < directions.count; first += lanes_of(Pack())) {
+    flight(plan, reference, initial, launch_velocity, gain,
+           {std::min(lanes_of(Pack()), directions.count - first), directions.shapes + first * size,
+            directions.powers + first, directions.launches + first * size},
+           samples,
+           {tangents.arrival + first * size, first == 0 ? tangents.forces : nullptr,
+            tangents.forces_tangent + first * forces});
   }
 }
 
@@ -584,10 +594,10 @@ void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* 
 }
 
 void fly_along(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-               const double* launch_velocity, const FlightGains& gains,
-               const double* aim_directions, Index count, double* tangents) {
+               const double* launch_velocity, double gain, const Directions& directions,
+               std::span<const Index> samples, const Tangents& tangents) {
   HWY_DYNAMIC_DISPATCH(fly_along_all)
-  (plan, reference, initial, launch_velocity, gains, aim_directions, count, tangents);
+  (plan, reference, initial, launch_velocity, gain, directions, samples, tangents);
 }
 
 Index lanes() { return HWY_DYNAMIC_DISPATCH(lanes)(); }

@@ -69,11 +69,26 @@ struct FlightGains {
 void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
          const double* launch_velocity, const FlightGains& gains, double* finals, double* tangents);
 
-/// One flight under the gains of `gains`, a single flight: the derivatives of its final positions
-/// [2N] along each of `count` directions of the aim offset [2N], one after another.
+/// Directions to change a flight in, one after another.
+struct Directions {
+  Index count = 0;
+  const double* shapes = nullptr;    ///< of the aim offset [2N] each
+  const Index* powers = nullptr;     ///< which of aim_powers they are for
+  const double* launches = nullptr;  ///< what they make of the launch velocity [2N] each
+};
+
+/// What fly_along writes, of each direction after another where it says each.
+struct Tangents {
+  double* arrival = nullptr;         ///< derivative of the final positions [2N] each
+  double* forces = nullptr;          ///< control forces at the samples [2N × samples], or null
+  double* forces_tangent = nullptr;  ///< their derivative [2N × samples] each
+};
+
+/// One flight at one gain and its derivatives along `directions`. `samples` are the steps,
+/// ascending, whose control forces are kept.
 void fly_along(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-               const double* launch_velocity, const FlightGains& gains,
-               const double* aim_directions, Index count, double* tangents);
+               const double* launch_velocity, double gain, const Directions& directions,
+               std::span<const Index> samples, const Tangents& tangents);
 
 /// Gains that `fly` takes side by side, one a SIMD lane.
 Index lanes();

@@ -146,24 +146,59 @@ class NativeBackend final : public Backend {
     return result;
   }
 
-  Eigen::MatrixXd arrival_tangent(const Gains& gains) const override {
-    const Index size = problem().target.size();
+  FlightTangent flight_tangent(double gain, const AimDirections& directions) const override {
     const ReferenceMotion reference(problem(), time_step());
-    // A unit aim offset of each coordinate, about its centroid.
-    Eigen::MatrixXd aim = Eigen::MatrixXd::Identity(size, size);
-    for (Index k = 0; k < size; ++k) {
-      Eigen::Map<Points> direction(aim.col(k).data(), 2, size / 2);
-      direction = shape_of(direction).eval();
+    const Points velocities = launch(*this);
+    const Points& initial = problem().chain.initial;
+    const Index size = initial.size();
+    const Index count = directions.shapes.cols();
+    Eigen::MatrixXd shapes(size, count), launches(size, count);
+    for (Index d = 0; d < count; ++d) {
+      const auto power = static_cast<std::size_t>(directions.powers[static_cast<std::size_t>(d)]);
+      const Points shape = shape_of(directions.shapes.col(d).reshaped(2, size / 2));
+      const Points turned = reference.aim_rates()[power] * shape;
+      shapes.col(d) = shape.reshaped();
+      launches.col(d) =
+          (problem().launch == Launch::inextensible ? without_stretching(initial, turned) : turned)
+              .reshaped();
     }
-    const Points velocities = nuno::launch(*this);
-    const GroupedFlights flight(problem(), {&gains, 1}, 0);
-    Eigen::MatrixXd tangent(size, size);
+
+    // The nearer to arrival, where the forces are strong and short, the closer.
+    constexpr Index most_samples = 24;
+    std::vector<Index> samples;
+    std::vector<double> weights;
+    Index sampled = 0;
+    for (Index k = 0; k < most_samples; ++k) {
+      const double left = 1 - static_cast<double>(k + 1) / most_samples;
+      const Index end =
+          static_cast<Index>(std::llround((1 - left * left) * static_cast<double>(steps())));
+      if (end == sampled) continue;
+      samples.push_back((sampled + end) / 2);
+      weights.push_back(
+          std::sqrt(static_cast<double>(end - sampled) / static_cast<double>(steps() * size / 2)) /
+          effort_unit(problem()));
+      sampled = end;
+    }
+
+    FlightTangent tangent;
+    const Index forces = size * static_cast<Index>(samples.size());
+    tangent.arrival.resize(size, count);
+    tangent.forces.resize(forces);
+    tangent.forces_tangent.resize(forces, count);
     const Index batch = lanes();
-    parallel_for((size + batch - 1) / batch, [&](Index b) {
+    parallel_for((count + batch - 1) / batch, [&](Index b) {
       const Index first = b * batch;
-      fly_along(plan_, reference, problem().chain.initial.data(), velocities.data(), flight.gains(),
-                aim.col(first).data(), std::min(batch, size - first), tangent.col(first).data());
+      fly_along(plan_, reference, initial.data(), velocities.data(), gain,
+                {std::min(batch, count - first), shapes.col(first).data(),
+                 directions.powers.data() + first, launches.col(first).data()},
+                samples,
+                {tangent.arrival.col(first).data(), b == 0 ? tangent.forces.data() : nullptr,
+                 tangent.forces_tangent.col(first).data()});
     });
+    const Eigen::Map<const Vector> weight(weights.data(), static_cast<Index>(weights.size()));
+    const Vector each = weight.transpose().replicate(size, 1).reshaped();
+    tangent.forces.array() *= each.array();
+    tangent.forces_tangent.array().colwise() *= each.array();
     return tangent;
   }
 

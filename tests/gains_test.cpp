@@ -2,7 +2,6 @@
 
 #include <nuno/gains.h>
 #include <nuno/joint_search.h>
-#include <nuno/refine.h>
 #include <nuno/rollout.h>
 #include <nuno/shape_control.h>
 
@@ -221,27 +220,6 @@ TEST(GroupedFlight, KnowsTheSlopeByEveryGain) {
   }
 }
 
-TEST(GroupedFlight, KnowsTheTangentAlongTheAim) {
-  Problem problem = morph_problem();
-  for (const Gains& gains : unlike_gains(problem)) {
-    problem.aim_offset.resize(0, 0);
-    const Eigen::MatrixXd tangent = native::make_backend(problem)->arrival_tangent(gains);
-    for (const Index coordinate : {0, 13, 63}) {
-      const double d = 1e-4;
-      Eigen::VectorXd difference = Eigen::VectorXd::Zero(2 * N);
-      const std::pair<double, double> stencil[] = {{-2, 1}, {-1, -8}, {1, 8}, {2, -1}};
-      for (const auto& [steps, weight] : stencil) {
-        problem.aim_offset = Points::Zero(2, N);
-        problem.aim_offset(coordinate % 2, coordinate / 2) = steps * d;
-        difference +=
-            weight * rollout(*native::make_backend(problem), gains).final.reshaped() / (12 * d);
-      }
-      // As for one gain, see ArrivalTangent.
-      EXPECT_LT((tangent.col(coordinate) - difference).norm(), 1e-6 * difference.norm());
-    }
-  }
-}
-
 TEST(GroupedFlight, BringsTheCentroidHomeOnEveryEngine) {
   const Problem problem = hold_problem();
   for (const Engine& engine : {native_engine, box2d_weld_engine}) {
@@ -262,14 +240,6 @@ TEST(GroupedFlight, EndsInTheSameShapeOnBothEngines) {
     // What the engines differ by on calm scenes, see docs/two-engines.md.
     EXPECT_LT(shape_difference(one, other).mean, 1e-3 * problem.chain.length);
   }
-}
-
-TEST(GroupedFlight, IsRefinedLikeAnyOther) {
-  const Problem problem = morph_problem();
-  const MakeBackend make = [](const Problem& p) { return native::make_backend(p); };
-  const RefineSummary refined = refine(problem, by_group({3, 5}), make, make);
-  EXPECT_LT(refined.flight.error.mean, 0.5 * refined.error_before);
-  EXPECT_EQ(refined.flight.low_gains, std::vector<double>{3});
 }
 
 // ---- the joint search ------------------------------------------------------------------------

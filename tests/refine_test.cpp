@@ -1,9 +1,13 @@
 #include <nuno/box2d.h>
 #include <nuno/native.h>
+#include <nuno/reference_motion.h>
 #include <nuno/refine.h>
 #include <nuno/trade_off.h>
 
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
 
 #include "scene_library.h"
 
@@ -33,53 +37,146 @@ Problem reachable(Problem problem) {
   return problem;
 }
 
-TEST(ArrivalTangent, IsTheDerivativeByCentralDifferences) {
-  for (const Reference reference : {Reference::hold, Reference::morph}) {
-    Problem problem = morph_problem(4);
-    problem.reference = reference;
-    const double gain = 0.3;
-    const Eigen::MatrixXd tangent = on_native(problem)->arrival_tangent(gain);
-    for (const Index coordinate : {0, 13, 40, 63}) {
-      const double d = 1e-4;
-      Eigen::VectorXd difference = Eigen::VectorXd::Zero(64);
-      const std::pair<double, double> stencil[] = {{-2, 1}, {-1, -8}, {1, 8}, {2, -1}};
-      for (const auto& [steps, weight] : stencil) {
-        problem.aim_offset = Points::Zero(2, 32);
-        problem.aim_offset(coordinate % 2, coordinate / 2) = steps * d;
-        difference += weight * rollout(*on_native(problem), gain).final.reshaped() / (12 * d);
-      }
-      problem.aim_offset.resize(0, 0);
-      // Fourth-order differences over 1e-4 m: d⁴ of fifth derivatives, and rounding 1e-13/1e-4.
-      EXPECT_LT((tangent.col(coordinate) - difference).norm(), 1e-6 * difference.norm())
-          << coordinate;
+/// The library's scene at the gain of refining.
+double following_gain_of(const Problem& problem) { return following_gain(*on_native(problem)); }
+
+/// One waved shape for each of aim_powers, none like another.
+AimDirections one_for_each_power(Index particles) {
+  AimDirections directions;
+  directions.shapes.resize(2 * particles, static_cast<Index>(aim_powers.size()));
+  for (std::size_t power = 0; power < aim_powers.size(); ++power) {
+    const auto k = static_cast<Index>(power);
+    directions.powers.push_back(k);
+    for (Index i = 0; i < 2 * particles; ++i) {
+      directions.shapes(i, k) = std::sin(0.3 * static_cast<double>((i + 1) * (k + 2)));
     }
   }
+  return directions;
+}
+
+TEST(FlightTangent, IsTheDerivativeByCentralDifferences) {
+  for (const Reference reference : {Reference::hold, Reference::morph}) {
+    for (const Launch launch : {Launch::ballistic, Launch::inextensible}) {
+      Problem problem = morph_problem(4);
+      problem.reference = reference;
+      problem.launch = launch;
+      problem.aim_offset.assign(aim_powers.size(), Points::Zero(2, 32));
+      const double gain = 0.3;
+      const AimDirections directions = one_for_each_power(32);
+      const FlightTangent tangent = on_native(problem)->flight_tangent(gain, directions);
+      for (std::size_t power = 0; power < aim_powers.size(); ++power) {
+        const auto column = static_cast<Index>(power);
+        const double d = 2e-6;
+        Vector arrival = Vector::Zero(64);
+        Vector forces = Vector::Zero(tangent.forces.size());
+        const std::pair<double, double> stencil[] = {{-2, 1}, {-1, -8}, {1, 8}, {2, -1}};
+        for (const auto& [steps, weight] : stencil) {
+          Problem aside = problem;
+          aside.aim_offset[power] = steps * d * directions.shapes.col(column).reshaped(2, 32);
+          const auto backend = on_native(aside);
+          arrival += weight * rollout(*backend, gain).final.reshaped() / (12 * d);
+          forces += weight * backend->flight_tangent(gain, directions).forces / (12 * d);
+        }
+        // Fourth-order differences over micrometres: a launch that stretches shakes the cloth, and
+        // larger ones show it; rounding 1e-14/1e-6.
+        EXPECT_LT((tangent.arrival.col(column) - arrival).norm(), 1e-6 * arrival.norm()) << power;
+        EXPECT_LT((tangent.forces_tangent.col(column) - forces).norm(), 1e-6 * forces.norm())
+            << power;
+      }
+    }
+  }
+}
+
+TEST(FlightTangent, HasTheForcesOfTheControlEffort) {
+  const Problem problem = morph_problem(4);
+  const auto backend = on_native(problem);
+  const double gain = following_gain(*backend);
+  const FlightTangent tangent = backend->flight_tangent(gain, one_for_each_power(32));
+  // Two dozen samples of a smooth flight.
+  EXPECT_NEAR(tangent.forces.norm(), rollout(*backend, gain).control_effort, 0.02);
 }
 
 TEST(Refine, ArrivesExactlyWhereTheTargetIsWithinReach) {
   for (const std::size_t which : {0u, 4u, 7u, 15u}) {
     const Problem problem = reachable(morph_problem(which));
-    const RefineSummary summary = refine(problem, 5, on_native, on_native);
+    const RefineSummary summary = refine(problem, following_gain_of(problem), on_native, on_native);
     EXPECT_TRUE(summary.converged) << summary.reason;
     EXPECT_LT(summary.flight.error.mean, 1e-9 * problem.chain.length);
     EXPECT_GT(summary.error_before, 1e-4);
   }
 }
 
+TEST(Refine, ArrivesWithLessEffortThanAPlainFlightNeedsToComeNear) {
+  for (const std::size_t which : {2u, 3u, 6u, 14u}) {  // M, N, W and S to 2
+    const Problem problem = reachable(morph_problem(which));
+    const auto backend = on_native(problem);
+    const RefineSummary summary = refine(problem, following_gain(*backend), on_native, on_native);
+    EXPECT_TRUE(summary.converged) << summary.reason;
+    // The plain control at 300 times as much gain is still a part in a thousand off.
+    const Rollout plain = rollout(*backend, backend->largest_gain());
+    EXPECT_GT(plain.error.mean, 1e-3 * problem.chain.length);
+    EXPECT_LT(summary.flight.control_effort, 0.5 * plain.control_effort) << which;
+  }
+}
+
+TEST(Refine, IsNearerWithMoreEffortAndKeepsItsLimit) {
+  const Problem problem = reachable(morph_problem(3));
+  const double gain = following_gain_of(problem);
+  double last = std::numeric_limits<double>::infinity();
+  for (const double limit : {0.4, 0.6, 0.9, 1.3}) {
+    const RefineSummary summary =
+        refine(problem, gain, on_native, on_native, {.effort_limit = limit});
+    EXPECT_LE(summary.flight.control_effort, limit);
+    EXPECT_GT(summary.flight.control_effort, 0.85 * limit);
+    EXPECT_LT(summary.flight.error.mean, last) << limit;
+    last = summary.flight.error.mean;
+  }
+}
+
+TEST(Refine, LeavesAFlightThatForgetsHowItStarted) {
+  const Problem problem = reachable(morph_problem(3));
+  const double gain = following_gain_of(problem);
+  Problem aimed = problem;
+  const RefineSummary summary = refine(problem, gain, on_native, on_native);
+  aimed.aim_offset = summary.aim_offset;
+  const auto backend = on_native(aimed);
+  EXPECT_EQ(rollout(*backend, gain).final, summary.flight.final);  // the offset says it all
+  EXPECT_LT(sensitivity(*backend, summary.flight), 0.1);
+}
+
 TEST(Refine, ComesNearerToATargetOutOfReach) {
-  const Problem problem = morph_problem(7);  // a Z: its corners cut segments short
-  const RefineSummary summary = refine(problem, 5, on_native, on_native);
+  // Sharp corners: some of its segments are a third of the cloth's.
+  const Problem problem = make_problem(read_scene(NUNO_SCENES "/nuno/n1.json"));
+  const RefineSummary summary = refine(problem, following_gain_of(problem), on_native, on_native);
   EXPECT_FALSE(summary.converged);
   EXPECT_LT(summary.flight.error.mean, 0.5 * summary.error_before);
+  EXPECT_LT(summary.flight.max_strain, 0.05);  // and is not squeezed into it, which takes 0.5
+}
+
+TEST(Refine, SaysWhereItFindsNoFlightWithinItsLimit) {
+  const Problem problem = morph_problem(14);  // S to 2
+  const RefineSummary summary =
+      refine(problem, following_gain_of(problem), on_native, on_native, {.effort_limit = 0.01});
+  EXPECT_FALSE(summary.converged);
+  EXPECT_EQ(summary.reason, "no flight of so little effort was found");
+}
+
+TEST(Refine, ImprovesThePapersControlToo) {
+  Problem problem = reachable(morph_problem(4));
+  problem.reference = Reference::hold;
+  problem.damping_ratio = 0;
+  const RefineSummary summary = refine(problem, 0.01, on_native, on_native);
+  EXPECT_LT(summary.flight.error.mean, 0.1 * summary.error_before);
 }
 
 TEST(Refine, CarriesOverToTheOtherEngineAndIsCorrectedThere) {
   Problem problem = reachable(morph_problem(4));
   const double length = problem.chain.length;
-  problem.aim_offset = refine(problem, 5, on_native, on_native).aim_offset;
-  EXPECT_LT(rollout(*on_box2d(problem), 5).error.mean, 1e-2 * length);
+  const double gain = following_gain_of(problem);
+  problem.aim_offset = refine(problem, gain, on_native, on_native).aim_offset;
+  EXPECT_LT(rollout(*on_box2d(problem), gain).error.mean, 1e-2 * length);
   const RefineSummary corrected =
-      refine(problem, 5, on_box2d, on_native, {.tolerance = 1e-5, .rounds = 3});
+      refine(problem, gain, on_box2d, on_native, {.tolerance = 1e-5, .rounds = 4});
   EXPECT_LT(corrected.flight.error.mean, 1e-3 * length);
   EXPECT_LE(corrected.rollouts, 12);
 }

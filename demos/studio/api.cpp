@@ -224,9 +224,11 @@ Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
 }
 
 Json to_json(const RefineSummary& refinement) {
+  Points at_arrival = Points::Zero(2, refinement.flight.final.cols());
+  for (const Points& offset : refinement.aim_offset) at_arrival += offset;
   return {{"status", refinement.converged ? "converged" : "nearest"},
           {"error_before", refinement.error_before},
-          {"largest_offset", refinement.aim_offset.colwise().norm().maxCoeff()},
+          {"largest_offset", at_arrival.colwise().norm().maxCoeff()},
           {"rollouts", refinement.rollouts},
           {"tangents", refinement.tangents},
           {"seconds", refinement.seconds},
@@ -314,7 +316,8 @@ Throw run(const std::string& body, const Options& options, bool optimizes, const
   turn.check();
   if (keeps_frames) require_few_frames(file);
   if (options.refine) {
-    result.refined = aim_off(options.backend, file, gain, [&] { turn.check(); });
+    result.refined = aim_off(options.backend, file, {}, [&] { turn.check(); });
+    gain = result.refined->flight.gain;
     file.problem.aim_offset = result.refined->aim_offset;
     result.backend = made_ready();
   }

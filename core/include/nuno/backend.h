@@ -51,6 +51,21 @@ struct ErrorGradient {
   std::vector<double> slopes;  ///< dE/dα of every group [m²/N]
 };
 
+/// Ways to change a problem's aim offset: each adds a shape to the offset of one of aim_powers.
+struct AimDirections {
+  std::vector<Index> powers;  ///< which of aim_powers, for each direction
+  Eigen::MatrixXd shapes;     ///< [2N × directions], x₀ y₀ x₁ y₁ …, m
+};
+
+/// A flight, and its derivatives along some directions.
+struct FlightTangent {
+  Eigen::MatrixXd arrival;  ///< of the particles' positions at arrival [2N × directions]
+  /// Control forces at some times on the way, weighted so that their squares sum to the square of
+  /// the control effort (see Rollout) as nearly as the times tell.
+  Vector forces;
+  Eigen::MatrixXd forces_tangent;  ///< of these [size of forces × directions]
+};
+
 /// An engine, made ready for one problem: const, and shared by any number of threads.
 class Backend {
  public:
@@ -94,9 +109,7 @@ class Backend {
 
   virtual std::vector<ErrorGradient> error_gradients(std::span<const Gains> gains) const;
 
-  /// Derivative of the particles' positions at arrival with respect to the problem's aim offset
-  /// [2N × 2N], both as x₀ y₀ x₁ y₁ …; only where has_slopes.
-  virtual Eigen::MatrixXd arrival_tangent(const Gains& gains) const;
+  virtual FlightTangent flight_tangent(double gain, const AimDirections& directions) const;
 
  protected:
   Backend(Problem problem, Index steps) : problem_(std::move(problem)), steps_(steps) {}

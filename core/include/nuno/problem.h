@@ -2,6 +2,8 @@
 
 #include <nuno/scene.h>
 
+#include <vector>
+
 namespace nuno {
 
 /// The mechanical chain that every engine realises: N equal particles on N − 1 segments, a hinge
@@ -31,9 +33,9 @@ struct Problem {
   Reference reference = Reference::hold;
   Arrival arrival = Arrival::pass;
   double damping_ratio = 0;  ///< ζ of the control force
-  /// How far beside the target the reference motion aims [2 × N], m, see refine.h; empty: not at
-  /// all.
-  Points aim_offset;
+  /// How far beside its way the reference motion aims, a shape [2 × N], m, for each of aim_powers
+  /// (reference_motion.h); empty: not at all.
+  std::vector<Points> aim_offset;
 };
 
 /// Throws InputError for a scene that is not valid, or has a segment of no length; `source` names

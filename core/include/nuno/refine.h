@@ -3,6 +3,7 @@
 #include <nuno/rollout.h>
 
 #include <functional>
+#include <limits>
 #include <string>
 
 namespace nuno {
@@ -11,32 +12,42 @@ namespace nuno {
 using MakeBackend = std::function<std::unique_ptr<Backend>(const Problem&)>;
 
 struct RefineOptions {
-  double tolerance = 1e-9;   ///< mean distance at arrival that is near enough, over L, > 0
-  double least_gain = 0.05;  ///< a round that takes less of the error away is the last, 0 … 1
-  Index rounds = 16;         ///< ≥ 1
+  double tolerance = 1e-9;  ///< mean distance at arrival that is near enough, over L, > 0
+  /// Control effort that must not be exceeded (see Rollout); then the error is the least for it. A
+  /// flight that takes more although it has been lowered is given with its reason.
+  double effort_limit = std::numeric_limits<double>::infinity();
+  Index rounds = 60;  ///< flights at most, ≥ 1
 };
 
 /// How near aiming off brought the cloth.
 struct RefineSummary {
-  bool converged = false;   ///< within the tolerance; if not, the target is out of reach
-  Points aim_offset;        ///< δ, to be set as Problem::aim_offset [2 × N], m
-  Rollout flight;           ///< with it
-  double error_before = 0;  ///< mean distance without it, or with the problem's own [m]
-  Index rollouts = 0;       ///< flown
-  Index tangents = 0;       ///< taken
-  double seconds = 0;       ///< wall clock
-  std::string reason;       ///< why it stopped, for people
+  bool converged = false;          ///< within the tolerance
+  std::vector<Points> aim_offset;  ///< δ, to be set as Problem::aim_offset
+  Rollout flight;                  ///< with it
+  double error_before = 0;         ///< mean distance without it, or with the problem's own [m]
+  Index rollouts = 0;              ///< flown
+  Index tangents = 0;              ///< taken
+  double seconds = 0;              ///< wall clock
+  std::string reason;              ///< why it stopped, for people
 };
 
-/// Aims off, as an archer does in the wind: lets the reference motion, and the launch along it, end
-/// beside the target by an offset δ, so that the cloth itself ends on it. Material and control law
-/// stay as they are.
+/// The gain at which to refine [N/m]: enough for the cloth to follow its reference, on any engine,
+/// and no more, since what the cloth follows by itself takes no force at any gain.
+double following_gain(const Backend& backend);
+
+/// Aims off, as an archer does in the wind: moves the reference motion, and the launch along it, so
+/// that the cloth arrives on the target, and on a way that it goes nearly by itself: of all aim
+/// offsets δ (see ReferenceMotion) that arrive, those of least control effort. Material and control
+/// law stay as they are.
 ///
-/// Levenberg–Marquardt on the 2N coordinates at arrival, min |x(t₀; δ) − target|² + λ²·|δ|², so
-/// among offsets that arrive it tends to the least. `make` flies; `model`, which may be another
-/// engine, gives the tangent ∂x(t₀)/∂δ (exact for the native chain): an answer of the chain can be
-/// corrected on an engine that knows no derivative. Starts from the problem's aim offset.
-RefineSummary refine(const Problem& problem, const Gains& gains, const MakeBackend& make,
+/// Gauss–Newton on effort² + weight²·error² while the weight grows, from a flight in which effort
+/// counts to one that arrives; where it stops on the way, at the tolerance or at the effort limit,
+/// stands a best trade of one for the other. A target whose segments are not as long as the cloth's
+/// is out of reach: it ends where coming nearer would cost more than it is worth. `make` flies;
+/// `model`, which may be another engine, gives the tangents (exact for the native chain), each used
+/// as long as it foretells what happens: an answer of the chain is corrected on an engine that
+/// knows no derivative. Starts from the problem's aim offset.
+RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options = {});
 
 }  // namespace nuno
