@@ -154,6 +154,9 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
   if (options.warm_start && options.optimizer != optimizer_names.front()) {
     throw InputError(fmt::format("warm_start: is not for the optimizer {}", options.optimizer));
   }
+  if (options.refine && options.has_alpha) {
+    throw InputError("refine: does not go with alpha, it has a gain of its own");
+  }
   return options;
 }
 
@@ -217,6 +220,7 @@ Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
   }
   return {{"optimizer", optimizer},
           {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
+          {"alpha", summary.gain},
           {"evaluations", summary.evaluations},
           {"seconds", summary.seconds},
           {"reason", summary.reason},
@@ -344,17 +348,7 @@ Answer result_answer(const std::string& body, const Options& options, const Turn
   if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
   std::optional<Optimization> optimization;
   if (done.found) optimization = Optimization{options.optimizer, *done.found};
-  if (done.refined) {
-    // A gain that was given has no search, but how it was aimed belongs to the result.
-    if (!optimization) {
-      optimization = Optimization{"none",
-                                  {.gain = options.alpha,
-                                   .error = done.refined->error_before,
-                                   .history = {},
-                                   .reason = {}}};
-    }
-    optimization->refinement = done.refined;
-  }
+  if (done.refined) optimization->refinement = done.refined;
   return {.body = printed([&](std::FILE* file) {
             write_result(file, done.file.scene.name, *done.backend, done.flight,
                          bounded_sensitivity(*done.backend, done.flight), optimization);
@@ -468,7 +462,7 @@ using Names = std::set<std::string_view>;
 
 const Names of_optimize = {"page",   "backend", "optimizer", "warm_start",
                            "refine", "frames",  "after"};
-const Names of_simulate = {"page", "backend", "alpha", "refine", "frames", "after"};
+const Names of_simulate = {"page", "backend", "alpha", "frames", "after"};
 const Names of_result = {"page", "backend", "optimizer", "alpha", "refine"};
 const Names of_trade_off = {"page", "backend"};
 const Names of_report = {"page"};

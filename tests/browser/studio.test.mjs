@@ -283,8 +283,8 @@ test('aiming off puts the cloth on the target, where the control allows it', asy
   await page.uncheck('#aim');
   await settled();
   const straight = await flight_of('native');
-  assert.equal(straight.alpha, aimed.alpha);
-  assert.ok(aimed.error.mean < 0.5 * straight.error.mean, `${aimed.error.mean}, ${straight.error.mean}`);
+  assert.notEqual(straight.alpha, aimed.alpha);
+  assert.ok(aimed.error.mean < straight.error.mean, `${aimed.error.mean}, ${straight.error.mean}`);
   await page.click('#engine-over');
   await settled();
   assert.ok(await page.isDisabled('#aim'));

@@ -224,12 +224,14 @@ function toggle(name) {
 function try_gain(alpha, live) {
   if (app.alpha === null && alpha === null) return;
   app.alpha = alpha;
+  app.aims_off = false; // at a gain of its own
   throws.request(live);
   draw_soon(true);
 }
 
 function aim_off(on) {
   app.aims_off = on;
+  app.alpha = null;
   throws.request(false);
   draw_soon(true);
 }

@@ -69,7 +69,7 @@ export class Throws {
         after_native(got);
       });
     } else {
-      run('native', 'simulate', () => ({ alpha: app.alpha, ...sampled(), ...aimed() }), after_native);
+      run('native', 'simulate', () => ({ alpha: app.alpha, ...sampled() }), after_native);
       if (!live && app.results.native?.curve?.key !== body()) {
         run('curve', 'optimize', () => ({}), (got) => {
           this.take_search('native', got, true);
@@ -115,11 +115,11 @@ export class Throws {
 
   // whole: all of E(α) was searched, not the last valley alone.
   take_search(engine, { answer, key }, whole) {
-    const { evaluations, seconds, history } = answer.optimization;
+    const { alpha, evaluations, seconds, history } = answer.optimization;
     const result = (app.results[engine] ??= {});
-    result.best = answer.alpha;
+    result.best = alpha;
     result.search = { evaluations, seconds };
-    if (whole) result.curve = { history, best: answer.alpha, length: answer.cloth_length, key };
+    if (whole) result.curve = { history, best: alpha, length: answer.cloth_length, key };
   }
 
   failed(channel, error) {
