@@ -19,7 +19,7 @@ namespace nuno::bench {
 namespace {
 
 // What E(α) may be off, on either side, at the gains of Convergence: of the cloth's length.
-constexpr double tolerance = 3e-4;
+constexpr double tolerance = 1e-4;
 
 /// Steps that grow by a quarter of an octave.
 Index refined(Index steps, int quarter) {

@@ -247,7 +247,7 @@ void search_with_slopes(const Objective& objective, std::span<const double> gain
     const std::size_t refined =
         std::min(brackets.size(), static_cast<std::size_t>(options.brackets));
     if (refined == 0) break;
-    if (round > 0 && brackets[0].hope > best * (1 - options.error_tolerance)) break;
+    if (brackets[0].hope > best * (1 - options.error_tolerance)) break;
     std::vector<double> candidates;
     const auto unrefined = brackets.begin() + static_cast<std::ptrdiff_t>(refined);
     const std::vector<Bracket> split(brackets.begin(), unrefined);
