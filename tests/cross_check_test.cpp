@@ -79,7 +79,8 @@ TEST(CrossCheck, GlobalSearchIsNeverWorseThanSteepestDescent) {
       if (box2d && problem.chain.particles() > 32) continue;  // for the test's time
       const auto backend = box2d ? box2d::make_backend(problem) : native::make_backend(problem);
       const Objective errors = objective(*backend);
-      EXPECT_LE(global_search(errors).error, steepest_descent(errors).error + 1e-6 * problem.chain.length)
+      EXPECT_LE(global_search(errors).error,
+                steepest_descent(errors).error + 1e-6 * problem.chain.length)
           << scene.name << " on " << backend->name();
     }
   }
