@@ -244,6 +244,7 @@ struct Throw {
   SceneFile file;
   std::unique_ptr<Backend> backend;
   std::optional<OptimizeSummary> found;
+  std::vector<Evaluation> between;  ///< more of E(α) where the search took long strides
   std::optional<RefineSummary> refined;
   Rollout flight;
 };
@@ -270,7 +271,12 @@ std::string drawable(const Throw& done, const std::string& optimizer, const Flig
                {"control_effort", flight.control_effort},
                {"effort_unit", effort_unit(problem)},
                {"max_strain", flight.max_strain}};
-  if (done.found) head["optimization"] = to_json(*done.found, optimizer);
+  if (done.found) {
+    OptimizeSummary shown = *done.found;
+    shown.history.insert(shown.history.end(), done.between.begin(), done.between.end());
+    std::ranges::sort(shown.history, {}, &Evaluation::gain);
+    head["optimization"] = to_json(shown, optimizer);
+  }
   if (done.refined) head["refinement"] = to_json(*done.refined);
   std::string text = dump(head);
   text.pop_back();  // the brace: the shapes follow
@@ -300,6 +306,24 @@ OptimizeSummary search(const Options& options, const Objective& objective) {
   return global_search(objective, quick);
 }
 
+/// Two errors more in each wide gap of a search's, for the curve to be smooth to the eye.
+std::vector<Evaluation> between(const std::vector<Evaluation>& searched,
+                                const Objective& objective) {
+  constexpr double wide = 1.1;
+  std::vector<double> gains;
+  for (std::size_t i = 1; i < searched.size(); ++i) {
+    const double from = searched[i - 1].gain, to = searched[i].gain;
+    if (!(from > 0 && to > wide * from)) continue;
+    for (const double along : {1.0 / 3, 2.0 / 3}) {
+      gains.push_back(from * std::pow(to / from, along));
+    }
+  }
+  const std::vector<double> errors = objective.errors(gains);
+  std::vector<Evaluation> result;
+  for (std::size_t i = 0; i < gains.size(); ++i) result.push_back({gains[i], errors[i]});
+  return result;
+}
+
 /// As `nuno optimize` and `nuno simulate` do it, with their functions and options.
 Throw run(const std::string& body, const Options& options, bool optimizes, const Turn& turn,
           bool keeps_frames) {
@@ -314,8 +338,13 @@ Throw run(const std::string& body, const Options& options, bool optimizes, const
   require_quick(file, *result.backend, options);
   double gain = options.alpha;
   if (optimizes) {
-    result.found = search(options, cancellable(*result.backend, turn));
+    const Objective errors = cancellable(*result.backend, turn);
+    result.found = search(options, errors);
     gain = result.found->gain;
+    // Where they are cheap.
+    if (errors.samples && !options.warm_start) {
+      result.between = between(result.found->history, errors);
+    }
   }
   turn.check();
   if (keeps_frames) require_few_frames(file);
