@@ -249,6 +249,7 @@ void search_with_slopes(const Objective& objective, std::span<const double> gain
     if (refined == 0) break;
     if (brackets[0].hope > best * (1 - options.error_tolerance)) break;
     std::vector<double> candidates;
+    candidates.reserve(refined);
     const auto unrefined = brackets.begin() + static_cast<std::ptrdiff_t>(refined);
     const std::vector<Bracket> split(brackets.begin(), unrefined);
     brackets.erase(brackets.begin(), unrefined);
