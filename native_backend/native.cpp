@@ -204,16 +204,16 @@ class NativeBackend final : public Backend {
 
  private:
   /// Gains by group in the kernel's layout: each of them `copies` times, with the slope by another
-  /// group each time, or once without any if `copies` is 0.
+  /// group each time.
   class GroupedFlights {
    public:
     GroupedFlights(const Problem& problem, std::span<const Gains> gains, Index copies)
         : modes_(problem.chain.particles(), gains.empty() ? 1 : gains.front().count()) {
       for (const Gains& each : gains) {
-        for (Index copy = 0; copy < std::max<Index>(copies, 1); ++copy) {
+        for (Index copy = 0; copy < copies; ++copy) {
           values_.insert(values_.end(), each.low.begin(), each.low.end());
           values_.push_back(each.rest);
-          seeds_.push_back(copies == 0 ? FlightGains::no_group : copy);
+          seeds_.push_back(copy);
         }
       }
     }
