@@ -70,15 +70,17 @@ class LogObjective {
     std::vector<Vector> around = {x};
     for (Index k = 0; k < x.size(); ++k) {
       for (const double side : {-delta, delta}) {
-        around.push_back(x);
-        around.back()[k] += side;
+        Vector beside = x;
+        beside[k] += side;
+        around.push_back(within(beside));
       }
     }
     const std::vector<double> found = errors(around);
     point.error = found.front();
     for (Index k = 0; k < x.size(); ++k) {
       const auto behind = static_cast<std::size_t>(2 * k + 1);
-      point.slope[k] = (found[behind + 1] - found[behind]) / (2 * delta);
+      point.slope[k] =
+          (found[behind + 1] - found[behind]) / (around[behind + 1][k] - around[behind][k]);
     }
     return point;
   }
@@ -221,6 +223,7 @@ JointObjective joint_objective(const Backend& backend) {
   const Objective range = objective(backend);
   result.gain_scale = range.gain_scale;
   result.largest_gain = range.largest_gain;
+  result.negligible = range.negligible;
   return result;
 }
 
@@ -234,6 +237,7 @@ JointSearchSummary joint_search(const JointObjective& objective, const Evaluatio
   LogObjective place(objective, options);
   for (Index groups = 2; groups <= options.groups; ++groups) {
     JointStage stage = summary.stages.back();
+    if (stage.error <= objective.negligible) break;
     const Vector split = place.place(stage.gains.split(groups));
     Point best{split, stage.error, {}};
     for (const Vector& x : starts_from(place, options, split)) {

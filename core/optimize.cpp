@@ -67,6 +67,7 @@ Objective objective(const Backend& backend) {
   // default step and at half of it part by 1e-2 of the cloth's length and more.
   constexpr double most_undamped = 100;
   result.largest_gain = backend.largest_gain();
+  result.negligible = 1e-10 * problem.chain.length;
   if (problem.damping_ratio < 0.5) {
     result.largest_gain = std::min(result.largest_gain, most_undamped * result.gain_scale);
   }
@@ -163,21 +164,17 @@ struct Knot {
   ErrorSample sample;
 };
 
-struct Promise {
-  double u = 0;
-  double error = 0;
-};
-
 /// Between two knots every particle arrives on a smooth path, taken for the cubic through its ends
 /// and their derivatives. E, the mean distance from the target, is not so smooth, and is read off
 /// those paths.
 struct Bracket {
   const Knot* left;
   const Knot* right;
-  Promise promise;  ///< the least error on the paths
-  double hope = 0;  ///< how little it may be: the promise less what the last one nearby was off
+  double minimum = 0;      ///< where the error on the paths is least [u]
+  double prediction = 0;   ///< that error [m]
+  double lower_bound = 0;  ///< the prediction less what the last one nearby was off [m]
 
-  Bracket(const Knot& from, const Knot& to, double doubt) : left(&from), right(&to) {
+  Bracket(const Knot& from, const Knot& to, double model_error) : left(&from), right(&to) {
     constexpr int cells = 8;
     double least = std::numeric_limits<double>::infinity();
     int cell = 0;
@@ -191,8 +188,9 @@ struct Bracket {
     const double low = std::max(cell - 1, 0), high = std::min(cell + 1, cells);
     const auto [s, error] = boost::math::tools::brent_find_minima(
         [this](double at) { return error_at(at); }, low / cells, high / cells, 14);
-    promise = {std::lerp(left->u, right->u, std::clamp(s, 1e-4, 1 - 1e-4)), error};
-    hope = error - doubt;
+    minimum = std::lerp(left->u, right->u, std::clamp(s, 1e-4, 1 - 1e-4));
+    prediction = error;
+    lower_bound = error - model_error;
   }
 
   double width() const { return right->u - left->u; }
@@ -212,8 +210,8 @@ struct Bracket {
   }
 };
 
-/// Searches between `gains`, which ascend.
-void search_with_slopes(const Objective& objective, std::span<const double> gains,
+/// Searches between `gains`, which ascend. Whether it came to an end before the rounds ran out.
+bool search_with_slopes(const Objective& objective, std::span<const double> gains,
                         const GlobalSearchOptions& options, OptimizeSummary& summary) {
   double best = std::numeric_limits<double>::infinity();
   const auto sample = [&](std::span<const double> at) {
@@ -229,11 +227,11 @@ void search_with_slopes(const Objective& objective, std::span<const double> gain
   };
   std::list<Knot> knots;
   std::vector<Bracket> brackets;
-  const auto add_bracket = [&](const Knot& left, const Knot& right, double doubt) {
+  const auto add_bracket = [&](const Knot& left, const Knot& right, double model_error) {
     // From gain 0 on, the derivative along u of damped control is not u's own.
     if (left.u == 0 || right.u - left.u < options.gain_tolerance * right.u) return;
     if (std::isfinite(left.sample.error) && std::isfinite(right.sample.error)) {
-      brackets.emplace_back(left, right, doubt);
+      brackets.emplace_back(left, right, model_error);
     }
   };
 
@@ -241,27 +239,30 @@ void search_with_slopes(const Objective& objective, std::span<const double> gain
     knots.push_back(std::move(knot));
     if (knots.size() > 1) add_bracket(*std::prev(knots.end(), 2), knots.back(), 0);
   }
-  // Every round goes on in the brackets that now promise the least.
+  // Every round goes on in the brackets whose lower bound is least.
   for (Index round = 0; round < options.rounds; ++round) {
-    std::ranges::sort(brackets, {}, [](const Bracket& b) { return b.hope; });
+    std::ranges::sort(brackets, {}, [](const Bracket& b) { return b.lower_bound; });
     const std::size_t refined =
         std::min(brackets.size(), static_cast<std::size_t>(options.brackets));
-    if (refined == 0) break;
-    if (brackets[0].hope > best * (1 - options.error_tolerance)) break;
+    const double wanted = std::max(best * (1 - options.error_tolerance), objective.negligible);
+    if (refined == 0 || best <= objective.negligible || brackets[0].lower_bound > wanted) {
+      return true;
+    }
     std::vector<double> candidates;
     candidates.reserve(refined);
     const auto unrefined = brackets.begin() + static_cast<std::ptrdiff_t>(refined);
     const std::vector<Bracket> split(brackets.begin(), unrefined);
     brackets.erase(brackets.begin(), unrefined);
-    for (const Bracket& bracket : split) candidates.push_back(std::pow(bracket.promise.u, 2));
+    for (const Bracket& bracket : split) candidates.push_back(std::pow(bracket.minimum, 2));
     std::vector<Knot> found = sample(candidates);
     for (std::size_t i = 0; i < refined; ++i) {
       const Knot& middle = knots.emplace_back(std::move(found[i]));
-      const double doubt = 0.5 * std::abs(middle.sample.error - split[i].promise.error);
-      add_bracket(*split[i].left, middle, doubt);
-      add_bracket(middle, *split[i].right, doubt);
+      const double model_error = 0.5 * std::abs(middle.sample.error - split[i].prediction);
+      add_bracket(*split[i].left, middle, model_error);
+      add_bracket(middle, *split[i].right, model_error);
     }
   }
+  return brackets.empty();
 }
 
 /// Eight gains about one, a batch: its valley, if little has changed.
@@ -273,8 +274,11 @@ std::vector<double> gains_around(const Objective& objective, double gain) {
   return gains;
 }
 
-Evaluation lowest(const OptimizeSummary& summary) {
-  return *std::ranges::min_element(summary.history, {}, &Evaluation::error);
+/// The least error; of errors that are none, that of the least gain.
+Evaluation lowest(const OptimizeSummary& summary, double negligible) {
+  return *std::ranges::min_element(summary.history, {}, [&](const Evaluation& at) {
+    return std::pair(std::max(at.error, negligible), at.gain);
+  });
 }
 
 /// Is there a valley about the warm start? If the lowest gain is an outermost one, it has moved.
@@ -284,7 +288,7 @@ bool search_warm(const Objective& objective, const GlobalSearchOptions& options,
   if (!objective.samples || !(start > 0 && start < objective.largest_gain)) return false;
   const std::vector<double> gains = gains_around(objective, start);
   search_with_slopes(objective, gains, options, summary);
-  const double gain = lowest(summary).gain;
+  const double gain = lowest(summary, objective.negligible).gain;
   return gain > gains.front() && gain < gains.back();
 }
 
@@ -332,16 +336,19 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
   } else {
     const Index scan = objective.samples ? options.scan : 3 * options.scan;
     const std::vector<double> gains = scan_gains(objective, options, scan);
+    bool done = true;
     if (objective.samples) {
-      search_with_slopes(objective, gains, options, summary);
+      done = search_with_slopes(objective, gains, options, summary);
     } else {
       search_by_values(objective, gains, options, summary);
     }
-    summary.reason =
-        fmt::format("scanned {} gains, refined up to {} valleys", scan, options.brackets);
+    if (!done) summary.status = OptimizeStatus::budget;
+    summary.reason = done
+                         ? fmt::format("of {} gains scanned and the valleys between", scan)
+                         : fmt::format("{} rounds were not enough for all valleys", options.rounds);
   }
   std::ranges::sort(summary.history, {}, &Evaluation::gain);
-  const Evaluation best = lowest(summary);
+  const Evaluation best = lowest(summary, objective.negligible);
   summary.gain = best.gain;
   summary.error = best.error;
   summary.seconds = seconds_since(start);

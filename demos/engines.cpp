@@ -4,6 +4,7 @@
 
 #include <nuno/box2d.h>
 #include <nuno/native.h>
+#include <nuno/rollout.h>
 
 #include <algorithm>
 #include <cassert>
@@ -84,6 +85,13 @@ void require_few_frames(const SceneFile& file) {
   }
 }
 
+void require_few_particles_to_aim(const SceneFile& file) {
+  constexpr Index most = 128;  // a tangent takes N times as long as a flight, and N² numbers
+  if (file.scene.particles <= most) return;
+  throw InputError(fmt::format("{}: /particles: {} is not <= {}, the most to aim off with",
+                               file.path, file.scene.particles, most));
+}
+
 void require_groups(const SceneFile& file, Index groups) {
   const Index fewest = fewest_particles(groups);
   if (groups > 1 && file.scene.particles < fewest) {
@@ -133,21 +141,27 @@ RefineSummary aim_off(std::string_view name, const SceneFile& file, RefineOption
   const double gain = following_gain(*model(file.problem));
   RefineSummary refined = refine(file.problem, gain, model, model, options);
   if (name == "native") return refined;
+
+  const MakeBackend make = maker(name);
   Problem aimed = file.problem;
   aimed.aim_offset = refined.aim_offset;
+  RefineSummary replayed = refined;
+  replayed.flight = rollout(*make(aimed), gain);
+  replayed.error_before = rollout(*make(file.problem), gain).error.mean;
+  replayed.rollouts += 2;
+  replayed.converged = replayed.flight.error.mean <= options.tolerance * file.problem.chain.length;
+  // What an effort limit leaves is native's trade; another engine's steps towards it would leave
+  // it.
+  if (replayed.converged || std::isfinite(options.effort_limit)) return replayed;
   constexpr double single_precision = 1e-5;
   options.tolerance = std::max(options.tolerance, single_precision);
-  if (std::isfinite(options.effort_limit)) {
-    // What lies within it is as far as it goes.
-    options.tolerance =
-        std::max(options.tolerance, refined.flight.error.mean / file.problem.chain.length);
-  }
   options.rounds = 4;
-  RefineSummary corrected = refine(aimed, gain, maker(name), model, options);
-  corrected.rollouts += refined.rollouts;
-  corrected.tangents += refined.tangents;
-  corrected.seconds += refined.seconds;
-  return corrected;
+  RefineSummary corrected = refine(aimed, gain, make, model, options);
+  corrected.error_before = replayed.error_before;
+  corrected.rollouts += replayed.rollouts;
+  corrected.tangents += replayed.tangents;
+  corrected.seconds += replayed.seconds;
+  return corrected.flight.error.mean < replayed.flight.error.mean ? corrected : replayed;
 }
 
 OptimizeSummary run_optimizer(std::string_view name, const Objective& objective) {

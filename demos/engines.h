@@ -29,6 +29,9 @@ SceneFile parse_scene_file(const std::string& json, const std::string& path);
 /// Throws InputError if a result of this scene would hold more frames than memory does.
 void require_few_frames(const SceneFile& file);
 
+/// Throws InputError for a scene that is too large for aim_off.
+void require_few_particles_to_aim(const SceneFile& file);
+
 /// Throws InputError if the scene's particles have too few modes for so many groups of them.
 void require_groups(const SceneFile& file, Index groups);
 

@@ -49,6 +49,10 @@ Json to_json(const Points& points) {
   return array;
 }
 
+std::string_view word_for(OptimizeStatus status) {
+  return status == OptimizeStatus::converged ? "converged" : "budget";
+}
+
 Json to_json(const Optimization& optimization) {
   const OptimizeSummary& summary = optimization.summary;
   Json history = Json::array();
@@ -58,7 +62,7 @@ Json to_json(const Optimization& optimization) {
     history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
   }
   Json result = {{"optimizer", optimization.optimizer},
-                 {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
+                 {"status", word_for(summary.status)},
                  {"evaluations", summary.evaluations},
                  {"seconds", summary.seconds}};
   if (optimization.robust_error) result["robust_error"] = *optimization.robust_error;
@@ -72,17 +76,23 @@ Json to_json(const Optimization& optimization) {
     result["trade_off"] = curve;
   }
   if (optimization.joint) {
+    const JointSearchSummary& joint = *optimization.joint;
     Json stages = Json::array();
-    for (const JointStage& stage : optimization.joint->stages) {
+    for (const JointStage& stage : joint.stages) {
       stages.push_back({{"alphas", stage.gains.groups()}, {"error", stage.error}});
     }
-    result["coefficients"] = stages;
+    result["coefficients"] = {{"status", word_for(joint.status)},
+                              {"evaluations", joint.evaluations},
+                              {"seconds", joint.seconds},
+                              {"reason", joint.reason},
+                              {"stages", stages}};
   }
   if (optimization.refinement) {
     const RefineSummary& refinement = *optimization.refinement;
     Json aim_offset = Json::array();
     for (const Points& offset : refinement.aim_offset) aim_offset.push_back(to_json(offset));
     result["refinement"] = {{"status", refinement.converged ? "converged" : "nearest"},
+                            {"reason", refinement.reason},
                             {"error_before", refinement.error_before},
                             {"rollouts", refinement.rollouts},
                             {"tangents", refinement.tangents},

@@ -249,6 +249,10 @@ ExitStatus run(int argc, char** argv) {
     if (optimization.error_limit && optimization.effort_limit) {
       throw CLI::ValidationError("--effort-limit", "does not go with --error-limit");
     }
+    if (optimize_command.count("--optimizer") > 0 &&
+        (optimization.error_limit || optimization.effort_limit)) {
+      throw CLI::ValidationError("--optimizer", "does not go with a limit");
+    }
     if (optimization.robust && (optimization.error_limit || optimization.effort_limit)) {
       throw CLI::ValidationError("--robust", "does not go with a limit");
     }

@@ -56,11 +56,24 @@ Optimization trade(const OptimizeOptions& options, const SceneFile& file, const 
   return found;
 }
 
+/// Whether a flight serves the asked better than another: one within the limits than one without;
+/// then, under an error limit, by effort, else by error.
+bool is_better(const Rollout& a, const Rollout& b, const OptimizeOptions& options, double length) {
+  const auto kept = [&](const Rollout& flight) {
+    return (!options.error_limit || flight.error.mean <= *options.error_limit * length) &&
+           (!options.effort_limit || flight.control_effort <= *options.effort_limit);
+  };
+  if (kept(a) != kept(b)) return kept(a);
+  return options.error_limit && kept(a) ? a.control_effort < b.control_effort
+                                        : a.error.mean < b.error.mean;
+}
+
 }  // namespace
 
 ExitStatus optimize(const OptimizeOptions& options) {
   SceneFile file = read_scene_for(options.out, options.scene, options.time_step);
   require_groups(file, options.coefficients);
+  if (options.refine) require_few_particles_to_aim(file);
   auto backend = make_backend(options.backend, file);
   std::FILE* const summary = people(options.out);
   if (const std::string words = verdict(assess(*backend)); !words.empty()) {
@@ -84,10 +97,15 @@ ExitStatus optimize(const OptimizeOptions& options) {
     RefineOptions limits;
     if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
     if (options.effort_limit) limits.effort_limit = *options.effort_limit;
-    found.refinement = aim_off(options.backend, file, limits);
-    gains = found.refinement->flight.gain;
-    file.problem.aim_offset = found.refinement->aim_offset;
-    backend = make_backend(options.backend, file);
+    RefineSummary refined = aim_off(options.backend, file, limits);
+    if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.chain.length)) {
+      found.refinement = std::move(refined);
+      gains = found.refinement->flight.gain;
+      file.problem.aim_offset = found.refinement->aim_offset;
+      backend = make_backend(options.backend, file);
+    } else {
+      fmt::print(summary, "aiming off would be no better than the gain alone: left out\n");
+    }
   }
   // If every rollout diverged, the one at the gain it ended on says why.
   const ExitStatus status = fly(file, *backend, gains, options.out, found);
@@ -104,9 +122,11 @@ ExitStatus optimize(const OptimizeOptions& options) {
   if (found.joint) {
     std::vector<double> errors;
     for (const JointStage& stage : found.joint->stages) errors.push_back(percent * stage.error);
-    fmt::print(summary, "  {:<17} {:.4g} % with 1 … {} of them, {} rollouts in {}: {}\n",
-               "coefficients", fmt::join(errors, ", "), errors.size(), found.joint->evaluations,
-               duration(found.joint->seconds), found.joint->reason);
+    fmt::print(
+        summary, "  {:<17} {:.4g} % with 1 … {} of them, {} rollouts in {}: {}\n", "coefficients",
+        fmt::join(errors, ", "), errors.size(), found.joint->evaluations,
+        duration(found.joint->seconds),
+        found.joint->status == OptimizeStatus::budget ? "rounds ran out" : found.joint->reason);
   }
   if (found.refinement) {
     fmt::print(summary, "  {:<17} from {:.4g} % in {} rollouts and {} tangents, {}: {}\n",

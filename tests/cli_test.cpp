@@ -376,6 +376,9 @@ std::vector<BadCommand> bad_commands() {
       {"CoefficientsRobust",
        {"optimize", s, "--coefficients", "2", "--robust"},
        "--coefficients: does not go with --robust or a limit"},
+      {"OptimizerWithALimit",
+       {"optimize", s, "--optimizer", "global", "--error-limit", "0.1"},
+       "--optimizer: does not go with a limit"},
       {"RefineWithCoefficients",
        {"optimize", s, "--refine", "--coefficients", "2"},
        "--refine: does not go with --coefficients or --robust, it has a gain of its own"},
@@ -563,7 +566,7 @@ TEST_F(Result, OfSeveralCoefficientsCanBeFlownAgain) {
     const Json alphas = best["alphas"];
     ASSERT_EQ(alphas.size(), 2u) << backend;
     EXPECT_EQ(best["alpha"], alphas.back());
-    const Json stages = best["optimization"]["coefficients"];
+    const Json stages = best["optimization"]["coefficients"]["stages"];
     ASSERT_EQ(stages.size(), 2u);
     EXPECT_EQ(stages[1]["alphas"], alphas);
     EXPECT_EQ(stages[1]["error"], best["error"]["mean"]);
@@ -576,6 +579,33 @@ TEST_F(Result, OfSeveralCoefficientsCanBeFlownAgain) {
     const Json again = simulated({"simulate", cloth, "--backend", backend, "--alpha", list});
     EXPECT_EQ(again["final"], best["final"]);
     EXPECT_EQ(again["alphas"], alphas);
+  }
+}
+
+TEST_F(Result, OfAimingOffWithinALimitIsNoWorseThanOfTheGainAlone) {
+  Json morph = read_json(scene("s-curve-32"));
+  morph["reference"] = "morph";
+  morph["damping_ratio"] = 0.7;
+  write_text(in_folder("morph.json"), morph.dump());
+  const auto effort = [](const Json& result) { return result["control_effort"].get<double>(); };
+  const auto error = [](const Json& result) { return result["error"]["relative"].get<double>(); };
+  for (const std::string& cloth : {scene("s-curve-32"), in_folder("morph.json").string()}) {
+    for (const std::string limit : {"0.01", "0.5"}) {
+      std::vector<std::string> command = {"optimize", cloth, "--effort-limit", limit};
+      const Json alone = simulated(command);
+      command.push_back("--refine");
+      const Json refined = simulated(command);
+      EXPECT_LE(effort(refined), std::stod(limit)) << cloth;
+      EXPECT_LE(error(refined), error(alone)) << cloth << ' ' << limit;
+    }
+    for (const std::string limit : {"0.2", "0.05"}) {
+      std::vector<std::string> command = {"optimize", cloth, "--error-limit", limit};
+      const Json alone = simulated(command);
+      command.push_back("--refine");
+      const Json refined = simulated(command);
+      EXPECT_LE(error(refined), std::stod(limit)) << cloth;
+      EXPECT_LE(effort(refined), effort(alone)) << cloth << ' ' << limit;
+    }
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -135,6 +136,95 @@ TEST(GlobalSearch, StartsWarmInTheValleyOfTheLastOptimum) {
   EXPECT_LT(warm.evaluations, cold.evaluations);
   // A valley that has moved away is looked for everywhere.
   EXPECT_NEAR(global_search(objective, {.warm_start = 0.5}).gain, 3, 1e-3);
+}
+
+/// An engine with derivatives, by where its particles arrive [2 × N] as a function of u = √α and
+/// the derivative of that.
+Objective arriving(const std::function<Points(double)>& miss,
+                   const std::function<Points(double)>& miss_over_u) {
+  const auto mean = [](const Points& points) { return points.colwise().norm().mean(); };
+  Objective objective = made_of([=](double gain) { return mean(miss(std::sqrt(gain))); });
+  objective.samples = [=](std::span<const double> gains) {
+    std::vector<ErrorSample> samples;
+    for (const double gain : gains) {
+      const double u = std::sqrt(gain);
+      ErrorSample sample;
+      sample.miss = miss(u);
+      sample.error = mean(sample.miss);
+      sample.miss_slope = miss_over_u(u) / (2 * std::max(u, 1e-9));
+      samples.push_back(sample);
+    }
+    return samples;
+  };
+  return objective;
+}
+
+Objective two_particles_on_cubics() {
+  // One crosses its target at u = 2, where E has an edge; the other is near its own.
+  return arriving(
+      [](double u) {
+        return Points{{u - 2, 0.1 * (u - 1)}, {0, 0.02 * std::pow(u, 3)}};
+      },
+      [](double u) {
+        return Points{{1, 0.1}, {0, 0.06 * u * u}};
+      });
+}
+
+TEST(GlobalSearch, FindsAnEdgeOfTheErrorWhereTheArrivalsAreSmooth) {
+  Objective objective = two_particles_on_cubics();
+  objective.largest_gain = 100;
+  const OptimizeSummary summary = global_search(objective);
+  EXPECT_NEAR(summary.gain, 4, 1e-4);
+  EXPECT_EQ(summary.status, OptimizeStatus::converged);
+  // The cubics are exact: two rounds at most.
+  EXPECT_LE(summary.evaluations, 24 + 2 * 8);
+}
+
+TEST(GlobalSearch, KeepsToTheLargestGainOfSamples) {
+  Objective objective = two_particles_on_cubics();
+  objective.largest_gain = 2.25;
+  const OptimizeSummary summary = global_search(objective);
+  EXPECT_EQ(summary.gain, 2.25);
+  for (const Evaluation& evaluation : summary.history) EXPECT_LE(evaluation.gain, 2.25);
+}
+
+TEST(GlobalSearch, StepsOverSamplesThatDiverge) {
+  Objective objective = two_particles_on_cubics();
+  objective.largest_gain = 100;
+  const auto samples = objective.samples;
+  objective.samples = [=](std::span<const double> gains) {
+    std::vector<ErrorSample> result = samples(gains);
+    for (std::size_t i = 0; i < gains.size(); ++i) {
+      if (gains[i] > 0.5 && gains[i] < 1) {
+        result[i] = {};
+        result[i].error = std::numeric_limits<double>::infinity();
+      }
+    }
+    return result;
+  };
+  EXPECT_NEAR(global_search(objective).gain, 4, 1e-4);
+}
+
+TEST(GlobalSearch, SaysWhenTheRoundsRanOut) {
+  const auto wavy = [](double u) { return Points{{std::sin(40 * u), u - 3}, {0, 0}}; };
+  const auto slope = [](double u) { return Points{{40 * std::cos(40 * u), 1}, {0, 0}}; };
+  Objective objective = arriving(wavy, slope);
+  objective.largest_gain = 100;
+  EXPECT_EQ(global_search(objective, {.rounds = 1}).status, OptimizeStatus::budget);
+}
+
+TEST(GlobalSearch, TakesTheLeastGainWhereNoneIsNeeded) {
+  Objective objective = arriving(
+      [](double u) {
+        return Points{{1e-14 / (1 + u)}, {0}};
+      },
+      [](double u) {
+        return Points{{-1e-14 / (1 + u) / (1 + u)}, {0}};
+      });
+  objective.negligible = 1e-10;
+  const OptimizeSummary summary = global_search(objective);
+  EXPECT_EQ(summary.gain, 0);
+  EXPECT_EQ(summary.evaluations, 24);
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST(Refine, CarriesOverToTheOtherEngineAndIsCorrectedThere) {
   const RefineSummary corrected =
       refine(problem, gain, on_box2d, on_native, {.tolerance = 1e-5, .rounds = 4});
   EXPECT_LT(corrected.flight.error.mean, 1e-3 * length);
-  EXPECT_LE(corrected.rollouts, 12);
+  EXPECT_LE(corrected.rollouts, 5);
 }
 
 TEST(Refine, LeavesTheCentroidWhereItWas) {

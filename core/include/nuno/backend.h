@@ -39,9 +39,9 @@ class Simulation {
 
 /// How one gain arrives, and the derivatives with respect to it.
 struct ErrorSample {
-  double error = 0;   ///< E(α) [m]; +∞ where the rollout diverged
-  double slope = 0;   ///< dE/dα [m²/N]
-  Points miss;        ///< final positions less the target [2 × N], m; empty where it diverged
+  double error = 0;  ///< E(α) [m]; +∞ where the rollout diverged
+  double slope = 0;  ///< dE/dα [m²/N]; damped and at α = 0, where it is infinite, of the springs
+  Points miss;       ///< final positions less the target [2 × N], m; empty where it diverged
   Points miss_slope;  ///< its derivative [2 × N], m²/N
 };
 

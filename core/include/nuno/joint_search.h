@@ -17,6 +17,7 @@ struct JointObjective {
   std::function<std::vector<ErrorGradient>(std::span<const Gains> gains)> gradients;
   double gain_scale = 1;                                          ///< see Objective [N/m]
   double largest_gain = std::numeric_limits<double>::infinity();  ///< of any group [N/m]
+  double negligible = 0;                                          ///< see Objective [m]
 };
 
 /// The error at arrival of a backend's problem; the backend must outlive it.

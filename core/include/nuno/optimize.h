@@ -21,6 +21,8 @@ struct Objective {
   /// Where E(α) ends to make sense [N/m]: gains above are not resolved by the engine's time step
   /// or, without damping (ζ < ½), pull the cloth through itself so often that E is noise.
   double largest_gain = std::numeric_limits<double>::infinity();
+  /// An error that is as good as none [m], ≥ 0: below, the smallest gain is the best.
+  double negligible = 0;
 };
 
 /// The error at arrival of a backend's problem; the backend must outlive it.
@@ -65,10 +67,10 @@ struct GlobalSearchOptions {
   double smallest_gain = 1e-2;  ///< of the scan, in gain scales, > 0
   double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's largest
   Index scan = 24;     ///< gains of the scan, 0 among them, ≥ 4; thrice as many by values
-  Index brackets = 8;  ///< valleys that are refined, the deepest first, ≥ 1
+  Index brackets = 8;  ///< refined in a round (by values: valleys in all), ≥ 1
   Index rounds = 12;   ///< of refinement at most, ≥ 1; by values, a rollout each
-  double gain_tolerance = 1e-6;   ///< relative; a valley that is known as well is done
-  double error_tolerance = 1e-6;  ///< relative; done when no valley promises to be so much deeper
+  double gain_tolerance = 1e-6;   ///< of √α, relative; a bracket so narrow is done
+  double error_tolerance = 1e-6;  ///< relative; done when no bracket promises so much less
   /// The best gain of a scene that differs little [N/m]: with slopes, its valley is searched, and
   /// the whole range only if it has moved far.
   std::optional<double> warm_start = {};
@@ -76,7 +78,8 @@ struct GlobalSearchOptions {
 
 /// A scan, then a refinement of the deepest valleys: where the objective knows its derivatives, on
 /// cubics through the arrivals of all particles, a round for all valleys in one batch; otherwise by
-/// Brent's method in one valley after another. Never worse than any gain that it has tried.
+/// Brent's method in one valley after another. Never worse than any gain that it has tried; a
+/// valley narrower than the scan, as fragile flights have, may be missed.
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options = {});
 
 }  // namespace nuno
