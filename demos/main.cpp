@@ -228,9 +228,11 @@ ExitStatus run(int argc, char** argv) {
             }
             optimization.coefficients = static_cast<Index>(count);
           },
-          fmt::format("Gains of their own for low bending modes, 1 … {}: modes 1-2, 3-5,\n"
-                      "6-11 and the rest, found together from the best single gain on",
-                      most_groups))
+          fmt::format("1 … {} gains, for the shape's waves from long to short, found\n"
+                      "together from the best single gain on: up to {} half waves along\n"
+                      "the cloth, the rest; with more gains up to {}, up to {}",
+                      most_groups, last_mode_of_group[0], last_mode_of_group[1],
+                      last_mode_of_group[2]))
       ->type_name("K")
       ->default_str(fmt::format("{}", optimization.coefficients));
   optimize_command.add_flag("--refine", optimization.refine,

@@ -16,8 +16,9 @@ namespace nuno {
 /// Groups are modes 1–2, 3–5 and 6–11; the last group is all that are left. One group, the paper's
 /// law, is every mode alike.
 struct Gains {
-  std::vector<double> low;  ///< of the groups of low modes, from low to high; at most 3
-  double rest = 0;          ///< of the last group
+  std::vector<double>
+      low;          ///< of the groups of low modes, from low to high; fewer than most_groups
+  double rest = 0;  ///< of the last group
 
   /// One gain for all modes.
   Gains(double gain) : rest(gain) {}
