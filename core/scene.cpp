@@ -9,9 +9,6 @@ namespace {
 
 constexpr Index smallest_particles = 3;
 constexpr Index largest_particles = 1'000'000;
-// Far outside what a cloth can be, and far inside what doubles can square and multiply.
-constexpr double largest_number = 1e12;
-constexpr double smallest_positive = 1e-12;
 
 [[noreturn]] void refuse(const std::string& source, std::string_view field,
                          const std::string& what) {
@@ -20,16 +17,17 @@ constexpr double smallest_positive = 1e-12;
 
 void require_positive(const std::string& source, std::string_view field, double value) {
   if (!(value > 0)) refuse(source, field, fmt::format("{} is not > 0", value));
-  if (!(value >= smallest_positive && value <= largest_number)) {
+  if (!(value >= smallest_scene_number && value <= largest_scene_number)) {
     refuse(source, field,
-           fmt::format("{} is not within {} … {}", value, smallest_positive, largest_number));
+           fmt::format("{} is not within {} … {}", value, smallest_scene_number,
+                       largest_scene_number));
   }
 }
 
 void require_not_negative(const std::string& source, std::string_view field, double value) {
   if (!(value >= 0)) refuse(source, field, fmt::format("{} is not >= 0", value));
-  if (!(value <= largest_number)) {
-    refuse(source, field, fmt::format("{} is not <= {}", value, largest_number));
+  if (!(value <= largest_scene_number)) {
+    refuse(source, field, fmt::format("{} is not <= {}", value, largest_scene_number));
   }
 }
 
@@ -41,20 +39,21 @@ void require_polyline(const std::string& source, std::string_view field, const P
   for (Index i = 0; i < line.cols(); ++i) {
     for (Index row = 0; row < line.rows(); ++row) {
       const double value = line(row, i);
-      if (!(std::abs(value) <= largest_number)) {
+      if (!(std::abs(value) <= largest_scene_number)) {
         refuse(source, fmt::format("{}/{}/{}", field, i, row),
-               fmt::format("{} is not within ±{}", value, largest_number));
+               fmt::format("{} is not within ±{}", value, largest_scene_number));
       }
     }
   }
   const double length = segment_lengths(line).sum();
-  // Below that, coordinates cannot tell the cloth's points apart.
-  if (!(length > 0))
+  if (!(length > 0)) {
     refuse(source, field, "all points are the same, not at least 2 distinct points");
-  if (!(length >= 1e-9 * line.cwiseAbs().maxCoeff() && length >= smallest_positive)) {
+  }
+  if (!(length >= smallest_relative_length * line.cwiseAbs().maxCoeff() &&
+        length >= smallest_scene_number)) {
     refuse(source, field,
-           fmt::format("length {} is not >= {} and 1e-9 of its distance from the origin", length,
-                       smallest_positive));
+           fmt::format("length {} is not >= {} and {} of its distance from the origin", length,
+                       smallest_scene_number, smallest_relative_length));
   }
 }
 

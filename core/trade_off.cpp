@@ -43,12 +43,14 @@ std::vector<TradeOffPoint> best_trades(std::vector<TradeOffPoint> points) {
   return curve;
 }
 
-std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count) {
+std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count,
+                                     const std::function<void()>& before_rollout) {
   const Objective range = objective(backend);
   const double first = 1e-2 * range.gain_scale;
   const double last = std::max(2 * first, range.largest_gain);
   std::vector<TradeOffPoint> all(static_cast<std::size_t>(count) + 1);
   parallel_for(count + 1, [&](Index i) {
+    if (before_rollout) before_rollout();
     const double along = static_cast<double>(i - 1) / static_cast<double>(count - 1);
     const double gain = i == 0 ? 0 : first * std::pow(last / first, along);
     all[static_cast<std::size_t>(i)] = point_at(backend, gain);

@@ -1,6 +1,5 @@
 #include "comparison.h"
 
-#include <nuno/optimize.h>
 #include <nuno/parallel.h>
 
 #include <algorithm>
@@ -30,7 +29,8 @@ std::vector<double> gains_of_curve(const Backend& first, const Backend& second) 
 
 }  // namespace
 
-Comparison compare_engines(const std::string& scene, const Backend& first, const Backend& second) {
+Comparison compare_engines(const std::string& scene, const Backend& first, const Backend& second,
+                           const ComparisonOptions& options) {
   const std::array<const Backend*, 2> engines = {&first, &second};
   Comparison result;
   result.scene = scene;
@@ -39,6 +39,7 @@ Comparison compare_engines(const std::string& scene, const Backend& first, const
 
   // A rollout that has to arrive; the first that does not ends the comparison.
   const auto fly = [&](std::size_t engine, double gain) {
+    options.before_rollout();
     Rollout flight = rollout(*engines[engine], gain);
     if (diverged(flight) && !result.divergence) {
       result.divergence = {std::string(engines[engine]->name()), flight};
@@ -52,14 +53,15 @@ Comparison compare_engines(const std::string& scene, const Backend& first, const
     row.backend = engines[i]->name();
     row.launch_only_error = fly(i, 0).error.mean;
     if (result.divergence) return result;
-    const OptimizeSummary found =
-        global_search(with_progress(objective(*engines[i]), scene + " on " + row.backend));
+    const OptimizeSummary found = global_search(
+        with_progress(options.objective_of(*engines[i]), scene + " on " + row.backend));
     best[i] = fly(i, found.gain);
     if (result.divergence) return result;
     row.gain = found.gain;
     row.error = best[i].error;
     row.control_effort = best[i].control_effort;
     row.max_strain = best[i].max_strain;
+    options.before_rollout();
     row.sensitivity = bounded_sensitivity(*engines[i], best[i]);
     row.evaluations = found.evaluations;
     row.seconds = found.seconds;
@@ -82,11 +84,13 @@ Comparison compare_engines(const std::string& scene, const Backend& first, const
     result.curve_errors[engine] = result.curve_efforts[engine] = unknown;
     parallel_for(static_cast<Index>(points), [&](Index k) {
       const auto i = static_cast<std::size_t>(k);
+      options.before_rollout();
       const Rollout flight = rollout(*engines[engine], result.curve_gains[i]);
       if (diverged(flight)) return;
       result.curve_errors[engine][i] = flight.error.mean;
       result.curve_efforts[engine][i] = flight.control_effort;
       if (engine > 0) return;
+      options.before_rollout();
       result.curve_sensitivity[i] = bounded_sensitivity(first, flight);
       result.curve_strain[i] = flight.max_strain;
     });

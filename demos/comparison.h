@@ -2,9 +2,11 @@
 
 #include <nuno/backend.h>
 #include <nuno/error.h>
+#include <nuno/optimize.h>
 #include <nuno/rollout.h>
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,7 +49,15 @@ struct Comparison {
   std::optional<Divergence> divergence;  ///< if set, the numbers above mean nothing
 };
 
-Comparison compare_engines(const std::string& scene, const Backend& first, const Backend& second);
+struct ComparisonOptions {
+  /// What the search for each engine's best gain asks.
+  std::function<Objective(const Backend&)> objective_of = objective;
+  /// Called before every other rollout, by several threads at once; what it throws ends the work.
+  std::function<void()> before_rollout = [] {};
+};
+
+Comparison compare_engines(const std::string& scene, const Backend& first, const Backend& second,
+                           const ComparisonOptions& options = {});
 
 /// Whether the engines must agree at the first one's best gain: its flight is neither fragile nor
 /// stretched.

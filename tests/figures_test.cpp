@@ -284,7 +284,11 @@ TEST_F(Pictures, ABadResultIsRefusedInOneLineThatSaysWhereAndWhy) {
            {"/alpha", "much", "/alpha: \"much\" is not a number"},
            {"/alpha", -1, "/alpha: -1 is not >= 0"},
            {"/cloth_length", 0, "/cloth_length: 0 is not > 0"},
+           {"/cloth_length", 1e-300, "/cloth_length: 1e-300 is not >= 1e-12"},
+           {"/alpha", 1e16, "/alpha: 1e+16 is not within"},
            {"/target", 3, "/target: 3 is not a list"},
+           {"/target", Json(std::vector(8, std::array{1.0, 2.0})),
+            "/target: an extent of 0 is not"},
            {"/target/1", {1, 2, 3}, "/target/1: [1,2,3] is not a point [x, y]"},
            {"/final/2/0", nullptr, "/final/2/0: null is not a number"},
            {"/frames/times/1", 0, "/frames/times/1: 0 is not later than the frame before"},
@@ -310,6 +314,27 @@ TEST_F(Pictures, ABadResultIsRefusedInOneLineThatSaysWhereAndWhy) {
     EXPECT_EQ(nuno("render " + file + " --out " + in_folder("bad.svg").string()).status, 2) << text;
   }
   EXPECT_FALSE(fs::exists(in_folder("bad.svg")));
+}
+
+// Where numbers lie closer together than ticks, an axis has no next tick.
+TEST_F(Pictures, AResultFarFromTheOriginIsDrawnOrRefusedAtOnce) {
+  Json far = Json::parse(read_text(result()));
+  const auto rendered_at = [&](double extent) {
+    Json line = Json::array();
+    for (int i = 0; i < 8; ++i) line.push_back({1e9, 1 + extent * i / 7});
+    far["target"] = far["final"] = line;
+    for (Json& positions : far["frames"]["positions"]) positions = line;
+    const std::string file = in_folder("far.json").string();
+    std::ofstream(file) << far.dump();
+    return run("sh -c 'ulimit -v 4000000; exec timeout 20 " NUNO_PROGRAM " render " + file +
+               " --out " + in_folder("far.svg").string() + "'");
+  };
+  const Outcome refused = rendered_at(1e-7);
+  EXPECT_EQ(refused.status, 2) << refused.err;
+  EXPECT_NE(refused.err.find("/target: an extent of "), std::string::npos) << refused.err;
+  const Outcome drawn = rendered_at(2);
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_LT(fs::file_size(in_folder("far.svg")), 1'000'000u);
 }
 
 TEST_F(Pictures, TheReadmesPictureIsWhatItsCommandMakes) {

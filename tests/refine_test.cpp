@@ -6,8 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <thread>
 
 #include "scene_library.h"
 
@@ -233,6 +236,19 @@ TEST(TradeOff, FindsTheLeastErrorWithinAnEffortLimit) {
   EXPECT_NEAR(point.effort, 0.2, 1e-6);
   EXPECT_EQ(least_error(*backend, curve, 1e9).gain, curve.back().gain);
   EXPECT_EQ(least_error(*backend, curve, 0).gain, 0);
+}
+
+TEST(TradeOff, EndsWithWhatItsCallerThrows) {
+  struct Enough {};
+  const auto backend = on_native(morph_problem(0));
+  std::atomic<int> asked = 0;
+  EXPECT_THROW(trade_off(*backend, 24,
+                         [&] {
+                           if (++asked > 3) throw Enough();
+                         }),
+               Enough);
+  // The three, and one more on every core.
+  EXPECT_LE(asked, 3 + static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
 }
 
 }  // namespace

@@ -371,6 +371,8 @@ TEST_F(Studio, RefusesWithTheMessagesOfTheCommandLine) {
   EXPECT_EQ(refused("/api/optimize?warm_start=-1", small_scene, 400), "warm_start: -1 is not >= 0");
   EXPECT_EQ(refused("/api/optimize?warm_start=1&optimizer=steepest-descent", small_scene, 400),
             "warm_start: is not for the optimizer steepest-descent");
+  EXPECT_EQ(refused("/api/scene?foo=1", small_scene, 400),
+            "\"foo\": this request takes no options");
   Json fine = Json::parse(small_scene);
   fine["particles"] = 2000;
   fine["cloth"]["hinge_stiffness"] = 0;
@@ -378,6 +380,34 @@ TEST_F(Studio, RefusesWithTheMessagesOfTheCommandLine) {
                 .find("is not few enough to aim off in the studio"),
             std::string::npos);
   EXPECT_NE(refused("/api/nothing", small_scene, 404), "");
+}
+
+TEST_F(Studio, RefusesAFileOfMoreFramesThanAnAnswerHolds) {
+  Json scene = Json::parse(small_scene);
+  const auto answer = [&](const char* path, const char* field, double value) {
+    scene[field] = value;
+    return post(path, scene.dump());
+  };
+  // 8 particles over 0.2 s: 1 250 000 frames a second make 2 million points.
+  const double before = memory();
+  for (const char* path : {"/api/result", "/api/result?alpha=0.1", "/api/film"}) {
+    const std::string refused = answer(path, "frames_per_second", 1'250'001);
+    EXPECT_EQ(status_of(refused), 400) << path;
+    EXPECT_EQ(message_of(refused),
+              "scene.json: /frames_per_second: 1250001 is not <= 1.25e+06, the most that the "
+              "studio makes a file of with 8 particles over 0.2 s")
+        << path;
+  }
+  EXPECT_LT(memory(), before + 50e6);
+  EXPECT_EQ(status_of(answer("/api/optimize", "frames_per_second", 1'250'001)), 200);
+  EXPECT_EQ(status_of(answer("/api/result?alpha=0.1", "frames_per_second", 1000)), 200);
+  // Before it is thrown, whose search would take a minute or more.
+  Json long_one = Json::parse(long_scene);
+  long_one["arrival_time"] = 10.5;
+  const auto start = Clock::now();
+  EXPECT_NE(message_of(post("/api/film", long_one.dump())).find("/arrival_time: 10.5 is not <= 10"),
+            std::string::npos);
+  EXPECT_LT(Clock::now() - start, 5s);
 }
 
 TEST_F(Studio, RefusesWhatIsNoRequestOfThePage) {
@@ -428,15 +458,18 @@ TEST_F(Studio, AnswersManyAtOnce) {
 }
 
 TEST_F(Studio, ANewerRequestOfAPageEndsTheOlder) {
-  const Connection older(port_);
-  older.send(post_text("/api/optimize?page=a&backend=box2d", long_scene));
-  std::this_thread::sleep_for(300ms);
-  const auto start = Clock::now();
-  EXPECT_EQ(status_of(post("/api/optimize?page=a", small_scene)), 200);
-  const std::string answer = older.receive();
-  EXPECT_EQ(status_of(answer), 409) << body_of(answer).substr(0, 200);
-  // A portion of the search, on a machine that has other work; the whole takes minutes.
-  EXPECT_LT(Clock::now() - start, 30s);
+  for (const char* path : {"/api/optimize?page=a&backend=box2d",
+                           "/api/trade_off?page=a&backend=box2d", "/api/report?page=a"}) {
+    const Connection older(port_);
+    older.send(post_text(path, long_scene));
+    std::this_thread::sleep_for(300ms);
+    const auto start = Clock::now();
+    EXPECT_EQ(status_of(post("/api/optimize?page=a", small_scene)), 200);
+    const std::string answer = older.receive();
+    EXPECT_EQ(status_of(answer), 409) << path << ' ' << body_of(answer).substr(0, 200);
+    // A portion of the search, on a machine that has other work; the whole takes minutes.
+    EXPECT_LT(Clock::now() - start, 30s);
+  }
 }
 
 TEST_F(Studio, ControlCEndsItAtOnce) {

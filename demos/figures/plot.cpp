@@ -65,8 +65,10 @@ std::vector<Tick> ticks(const Axis& axis, int count) {
                                                        : 10);
   const int decimals = std::max(0, -static_cast<int>(std::floor(std::log10(step) + 1e-9)));
   const double first = std::ceil(axis.low / step - 1e-9);
-  for (double i = first; i * step <= axis.high + 1e-9 * range && i < first + 100; ++i) {
-    result.push_back({i * step, with_minus(fmt::format("{:.{}f}", i * step + 0.0, decimals))});
+  for (int k = 0; k < 100; ++k) {  // first + k may round to first
+    const double value = (first + k) * step;
+    if (!(value <= axis.high + 1e-9 * range)) break;
+    result.push_back({value, with_minus(fmt::format("{:.{}f}", value + 0.0, decimals))});
   }
   return result;
 }

@@ -13,8 +13,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int deepest = 16;             // a result has 5 levels
-constexpr double largest_number = 1e9;  // what a scene may hold, and then some
+constexpr int deepest = 16;  // a result has 5 levels
+// A flight may leave the bounds of its scene.
+constexpr double largest_number = 1e3 * largest_scene_number;
 
 /// A value of the file, which knows where it stands.
 struct Field {
@@ -112,6 +113,18 @@ Json read_json(const std::string& path) {
   return json;
 }
 
+/// A picture is at least as large as its target: one that is too small leaves no room for ticks.
+void require_extent(const std::string& path, const Points& target) {
+  const double extent = (target.rowwise().maxCoeff() - target.rowwise().minCoeff()).maxCoeff();
+  if (!(extent >= smallest_scene_number &&
+        extent >= smallest_relative_length * target.cwiseAbs().maxCoeff())) {
+    throw InputError(
+        fmt::format("{}: /target: an extent of {} is not >= {} and {} of its distance from the "
+                    "origin",
+                    path, extent, smallest_scene_number, smallest_relative_length));
+  }
+}
+
 }  // namespace
 
 bool is_scene_file(const std::string& path) {
@@ -131,11 +144,16 @@ figures::Flight read_result(const std::string& path) {
   flight.scene = root.child("scene").text();
   flight.backend = root.child("backend").text();
   flight.gain = root.child("alpha").not_negative();
-  flight.cloth_length = root.child("cloth_length").positive();
+  const Field cloth_length = root.child("cloth_length");
+  flight.cloth_length = cloth_length.positive();
+  if (!(flight.cloth_length >= smallest_scene_number)) {
+    cloth_length.refuse(fmt::format("is not >= {}", smallest_scene_number));
+  }
   const Field error = root.child("error");
   flight.error = error.child("mean").not_negative();
   flight.max_error = error.child("max").not_negative();
   flight.target = root.child("target").points(0);
+  require_extent(path, flight.target);
   const Index particles = flight.target.cols();
   (void)root.child("final").points(particles);
 

@@ -120,6 +120,7 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
   std::set<std::string_view> seen;
   for (const auto& [name, text] : parameters) {
     const std::string shown = dump(name.substr(0, longest_page));
+    if (known.empty()) throw InputError(shown + ": this request takes no options");
     if (!known.contains(name)) {
       throw InputError(fmt::format("{}: is not one of {}", shown, fmt::join(known, ", ")));
     }
@@ -191,6 +192,18 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
   if (static_cast<double>(options.frames) * flight * particles > most_points_in_frames) {
     throw InputError(fmt::format("frames: {} is not <= {}", options.frames,
                                  std::floor(most_points_in_frames / particles / flight)));
+  }
+}
+
+/// Throws InputError for a file of more frames than an answer should hold.
+void require_few_frames_in_file(const Scene& scene) {
+  const double most =
+      most_points_in_frames / static_cast<double>(scene.particles) / scene.arrival_time;
+  if (scene.frames_per_second > most) {
+    throw InputError(fmt::format(
+        "{}: /frames_per_second: {} is not <= {:.4g}, the most that the studio makes a "
+        "file of with {} particles over {} s",
+        scene_name, scene.frames_per_second, most, scene.particles, scene.arrival_time));
   }
 }
 
@@ -330,6 +343,7 @@ Throw run(const std::string& body, const Options& options, bool optimizes, const
   Throw result;
   result.file = parse_scene_file(body, scene_name);
   SceneFile& file = result.file;
+  if (keeps_frames) require_few_frames_in_file(file.scene);
   const auto made_ready = [&] {
     return optimizes ? make_backend(options.backend, file)
                      : make_backend_for_gain(options.backend, file, options.alpha);
@@ -347,7 +361,6 @@ Throw run(const std::string& body, const Options& options, bool optimizes, const
     }
   }
   turn.check();
-  if (keeps_frames) require_few_frames(file);
   if (options.refine) {
     result.refined = aim_off(options.backend, file, {}, [&] { turn.check(); });
     gain = result.refined->flight.gain;
@@ -386,13 +399,16 @@ Answer result_answer(const std::string& body, const Options& options, const Turn
 }
 
 /// Both engines on the scene, as the page that `nuno compare` writes.
-Answer report_answer(const std::string& body, const Options& options) {
+Answer report_answer(const std::string& body, const Options& options, const Turn& turn) {
   const SceneFile file = parse_scene_file(body, scene_name);
   const auto native = make_backend("native", file);
   const auto box2d = make_backend("box2d", file);
   require_quick(file, *native, options);
   require_quick(file, *box2d, options);
-  const Comparison comparison = compare_engines(file.scene.name, *native, *box2d);
+  const Comparison comparison = compare_engines(
+      file.scene.name, *native, *box2d,
+      {.objective_of = [&](const Backend& backend) { return cancellable(backend, turn); },
+       .before_rollout = [&] { turn.check(); }});
   clear_progress();
   if (comparison.divergence) {
     const auto& [backend, flight] = *comparison.divergence;
@@ -426,14 +442,14 @@ class TemporaryFolder {
 
 /// What `nuno render` makes of the result.
 Answer film_answer(const std::string& body, const Options& options, const Turn& turn) {
-  Answer result = result_answer(body, options, turn);
-  if (result.status != 200) return result;
   if (const double time = parse_scene_file(body, scene_name).scene.arrival_time;
       time > longest_film) {
     throw InputError(
         fmt::format("{}: /arrival_time: {} is not <= {}, the longest film of the studio",
                     scene_name, time, longest_film));
   }
+  const Answer result = result_answer(body, options, turn);
+  if (result.status != 200) return result;
   const TemporaryFolder folder;
   const std::string result_path = folder.file("result.json"), film = folder.file("film.mp4");
   write_output(result_path, [&](std::FILE* file) {
@@ -460,7 +476,8 @@ Answer trade_off_answer(const std::string& body, const Options& options, const T
                                                   : most_work_of_a_trade_off_box2d;
   const double count = std::clamp(most / work_of(*backend), 8.0, 64.0);
   Json points = Json::array();
-  for (const TradeOffPoint& point : trade_off(*backend, static_cast<Index>(count))) {
+  for (const TradeOffPoint& point :
+       trade_off(*backend, static_cast<Index>(count), [&] { turn.check(); })) {
     points.push_back(
         {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
   }
@@ -552,7 +569,7 @@ Answer Api::post(const std::string& path, const Parameters& parameters, const st
       answer = film_answer(body, options, turn);
     } else if (path == "/api/report") {
       begin(of_report);
-      answer = report_answer(body, options);
+      answer = report_answer(body, options, turn);
     } else if (path == "/" || path == "/api/about" || path == "/api/progress") {
       answer = refusal(405, path + ": takes GET");
     } else {

@@ -227,6 +227,68 @@ test('a request that an older one overtook on its way is sent again', async () =
   await settled();
 });
 
+test('another scene takes nothing that was asked of the one before', async () => {
+  const hold = async (what) => {
+    const held = [];
+    let free = false;
+    const keep = (route) => (free ? route.continue() : held.push(route));
+    await page.route(what, keep);
+    return {
+      asked: async () => {
+        for (const until = Date.now() + patience; !held.length; await page.waitForTimeout(20)) assert.ok(Date.now() < until);
+      },
+      release: async () => {
+        free = true;
+        await Promise.all(held.map((route) => route.continue().catch(() => {}))); // some are given up
+      },
+      end: () => page.unroute(what, keep),
+    };
+  };
+  const another = () => page.evaluate(() => document.querySelector('#new').click());
+  const kept = path.join(folder, 'kept.json');
+  writeFileSync(kept, JSON.stringify(await scene_of()));
+
+  // Under way: no one asks Box2D about the new scene.
+  let box2d = await hold('**/api/simulate?*box2d*');
+  await page.click('#engine-over');
+  await box2d.asked();
+  await page.click('#engine-native');
+  await another();
+  await box2d.release();
+  await settled();
+  await box2d.end();
+  assert.equal(await page.evaluate(() => nuno_studio.app.results.box2d?.key), undefined);
+
+  // Waiting: for Box2D's answer, while a gain is tried; the new scene has no best gain yet.
+  await page.click('#engine-over');
+  await settled();
+  box2d = await hold('**/api/simulate?*box2d*');
+  await page.locator('#gain-chart').scrollIntoViewIfNeeded();
+  const box = await page.locator('#gain-chart').boundingBox();
+  await page.mouse.move(box.x + 0.3 * box.width, box.y + 0.5 * box.height);
+  await page.mouse.down();
+  for (let i = 1; i <= 10; i++) {
+    await page.mouse.move(box.x + (0.3 + 0.02 * i) * box.width, box.y + 0.5 * box.height);
+    await page.waitForTimeout(40);
+  }
+  await box2d.asked();
+  const searches = await hold('**/api/optimize*');
+  await another();
+  await box2d.release();
+  await page.waitForTimeout(300);
+  const trouble = await page.evaluate(() => !document.querySelector('#trouble').hidden && document.querySelector('#trouble').textContent);
+  await searches.release();
+  await page.mouse.up();
+  await settled();
+  await box2d.end();
+  await searches.end();
+  assert.equal(trouble, false);
+
+  await page.click('#engine-native');
+  await page.setInputFiles('#file', kept);
+  await settled();
+});
+
 test('error is traded for effort along the second curve', async () => {
   const best = await flight_of('native');
   const trade_off = () => page.evaluate(() => nuno_studio.app.results.native.trade_off.points);

@@ -14,6 +14,14 @@ class InputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// What numbers of a scene may be: far outside what a cloth can be, and far inside what doubles can
+/// square and multiply.
+inline constexpr double largest_scene_number = 1e12;
+inline constexpr double smallest_scene_number = 1e-12;  ///< of those that are > 0
+/// The least length of a shape over its distance from the origin: below it, coordinates cannot tell
+/// the cloth's points apart.
+inline constexpr double smallest_relative_length = 1e-9;
+
 /// Material of the whole cloth. Control never changes a value here.
 struct Cloth {
   double mass = 0.1;               ///< M [kg], > 0; each particle has M/N

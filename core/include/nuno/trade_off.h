@@ -3,6 +3,7 @@
 #include <nuno/optimize.h>
 #include <nuno/rollout.h>
 
+#include <functional>
 #include <optional>
 
 namespace nuno {
@@ -19,8 +20,10 @@ struct TradeOffPoint {
 std::vector<TradeOffPoint> best_trades(std::vector<TradeOffPoint> points);
 
 /// The best trades of a backend's problem: among launch only and the gains (log-spaced over the
-/// objective's range, `count` of them).
-std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count = 64);
+/// objective's range, `count` of them). `before_rollout` is called before every rollout, by several
+/// threads at once; what it throws ends the work and comes out of here.
+std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count = 64,
+                                     const std::function<void()>& before_rollout = {});
 
 /// The point of least effort whose error is at most `error_limit` [m], between the points of
 /// `curve` too; nothing if no point is as near.

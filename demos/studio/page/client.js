@@ -9,12 +9,13 @@ class Refused extends Error {
   }
 }
 
-export async function ask(path, parameters, body) {
+// `signal` ends the wait for the answer.
+export async function ask(path, parameters, body, signal) {
   const query = new URLSearchParams(parameters).toString();
   let response;
   try {
     response = await fetch(`/api/${path}${query && `?${query}`}`, {
-      method: 'POST', headers: { 'Content-Type': 'application/json' }, body,
+      method: 'POST', headers: { 'Content-Type': 'application/json' }, body, signal,
     });
   } catch {
     throw new Refused(0, 'The program behind this page has ended. Start “nuno studio” again: the scene is kept.');
@@ -42,14 +43,15 @@ export class Channel {
     this.running = 0;
     this.newest = 0;
     this.waiting = null;
+    this.dropping = new AbortController();
   }
 
   get busy() { return this.running > 0 || this.waiting !== null; }
 
-  // `work(page)` is a promise; `done(result)` and `failed(error)` are called for what is not
+  // `work(page, signal)` is a promise; `done(result)` and `failed(error)` are called for what is not
   // overtaken by then.
   run({ work, done, failed, urgent }) {
-    const job = { work, done, failed, number: ++this.newest };
+    const job = { work, done, failed, number: ++this.newest, signal: this.dropping.signal };
     if (this.running > 0 && !urgent) {
       this.waiting = job;
       return;
@@ -58,15 +60,22 @@ export class Channel {
     this.start(job);
   }
 
+  // Nothing that was asked for until now is wanted any more.
+  drop() {
+    this.waiting = null;
+    this.dropping.abort();
+    this.dropping = new AbortController();
+  }
+
   async start(job) {
     this.running++;
     let again = false;
     try {
-      const result = await job.work(this.page);
+      const result = await job.work(this.page, job.signal);
       if (!this.overtaken(job)) job.done(result);
     } catch (error) {
       // The newest gives way to nothing: an older request came later to the program than it did.
-      again = error?.status === 409 && job.number === this.newest;
+      again = error?.status === 409 && job.number === this.newest && !job.signal.aborted;
       if (error?.status !== 409 && !this.overtaken(job)) job.failed(error);
     } finally {
       this.running--;
@@ -81,7 +90,9 @@ export class Channel {
     }
   }
 
-  // A later answer is drawn already or an urgent job is on its way; one that only waits does not
-  // make an answer stale: while the pointer moves, there is always one that waits.
-  overtaken(job) { return this.newest !== job.number && !(this.waiting?.number === this.newest); }
+  // It is dropped, a later answer is drawn already or an urgent job is on its way; one that only
+  // waits does not make an answer stale: while the pointer moves, there is always one that waits.
+  overtaken(job) {
+    return job.signal.aborted || (this.newest !== job.number && this.waiting?.number !== this.newest);
+  }
 }

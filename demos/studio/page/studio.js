@@ -248,6 +248,7 @@ function set_up_aiming() {
 }
 
 function use(new_scene, text_of_problem) {
+  throws.drop();
   if (app.doc) {
     app.doc.scene = new_scene;
     app.doc.commit();

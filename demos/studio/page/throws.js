@@ -34,10 +34,17 @@ export class Throws {
   // ------------------------------------------------------------------------------- asking
 
   // As everything is when the request leaves, however long it waited to.
-  async ask(path, parameters, page) {
+  async ask(path, parameters, page, signal) {
     const key = body(), move = this.latency.latest;
-    const answer = await (await ask(path, { page, ...parameters() }, key)).json();
+    const answer = await (await ask(path, { page, ...parameters() }, key, signal)).json();
     return { answer, key, move };
+  }
+
+  // Another scene is there: nothing that was asked of the one before is wanted.
+  drop() {
+    clearTimeout(this.rest_due);
+    for (const channel of Object.values(this.channels)) channel.drop();
+    this.settle();
   }
 
   // live: the scene is still changing.
@@ -49,7 +56,7 @@ export class Throws {
     const sampled = () => live ? { frames: frames_while_moving } : { frames: frames_at_rest(), after: time_after() };
     const aimed = () => (!live && app.aims_off && !no_aiming() ? { refine: 1 } : {});
     const run = (channel, path, parameters, done) => this.channels[channel].run({
-      work: (page) => this.ask(path, parameters, page),
+      work: (page, signal) => this.ask(path, parameters, page, signal),
       done,
       failed: (error) => this.failed(channel, error),
       urgent,
@@ -91,11 +98,11 @@ export class Throws {
       this.take('box2d', got);
     };
     if (own) run('box2d', 'optimize', () => ({ backend: 'box2d', ...sampled() }), done);
-    else run('box2d', 'simulate', () => ({ backend: 'box2d', alpha: app.alpha ?? app.results.native.best, ...sampled() }), done);
+    else run('box2d', 'simulate', () => ({ backend: 'box2d', alpha: app.alpha ?? app.results.native?.best, ...sampled() }), done);
   }
 
   request_trade_off(run) {
-    if (app.results.native.trade_off?.key === body()) return;
+    if (app.results.native?.trade_off?.key === body()) return;
     run('trade_off', 'trade_off', () => ({}), ({ answer, key }) => {
       app.results.native.trade_off = { points: answer.trade_off, length: answer.cloth_length, key };
       this.on.shown();
