@@ -377,7 +377,7 @@ TEST_F(Studio, RefusesWithTheMessagesOfTheCommandLine) {
   fine["particles"] = 2000;
   fine["cloth"]["hinge_stiffness"] = 0;
   EXPECT_NE(refused("/api/optimize?refine=1", fine.dump(), 400)
-                .find("is not few enough to aim off in the studio"),
+                .find("the most to aim off with"),
             std::string::npos);
   EXPECT_NE(refused("/api/nothing", small_scene, 404), "");
 }

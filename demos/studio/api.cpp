@@ -43,7 +43,6 @@ constexpr const char* scene_name = "scene.json";
 // A page waits for its answer: more than this for one rollout belongs on the command line.
 constexpr double most_particle_steps_native = 5e7;
 constexpr double most_particle_steps_box2d = 2e7;
-constexpr double most_work_of_a_tangent = 5e8;  // particle-steps over all 2N directions
 constexpr double most_work_of_a_trade_off_native = 1e9;
 constexpr double most_work_of_a_trade_off_box2d = 5e7;
 constexpr Index most_frames = 2000;
@@ -169,7 +168,6 @@ double work_of(const Backend& backend) {
 
 /// Throws InputError for a scene that would keep the page waiting for minutes.
 void require_quick(const SceneFile& file, const Backend& backend, const Options& options) {
-  const double particles = static_cast<double>(file.scene.particles);
   const double most =
       backend.name() == "native" ? most_particle_steps_native : most_particle_steps_box2d;
   if (work_of(backend) > most) {
@@ -178,12 +176,7 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
                     "this is for nuno optimize",
                     file.path, file.scene.particles, backend.steps(), backend.name()));
   }
-  if (options.refine && 2 * particles * work_of(backend) > most_work_of_a_tangent) {
-    throw InputError(
-        fmt::format("{}: /particles: {} is not few enough to aim off in the studio: this is for "
-                    "nuno optimize --refine",
-                    file.path, file.scene.particles));
-  }
+  if (options.refine) require_few_particles_to_aim(file);
   if (options.after > most_flights_after * file.scene.arrival_time) {
     throw InputError(fmt::format("after: {} is not <= {}, {} arrival times", options.after,
                                  most_flights_after * file.scene.arrival_time, most_flights_after));
