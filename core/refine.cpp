@@ -169,11 +169,13 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
                                     ? std::numeric_limits<double>::infinity()
                                     : 1e4;
   double growth = 4;
-  constexpr double least_damping = 1e-3, most_damping = 1e3, landing_damping = 1;
+  constexpr double least_damping = 1e-3, landing_damping = 1, most_damping = 1e3;
   double damping = least_damping;
   // Where the tangent no longer foretells what effort can be spared, little of it is left to spare;
   // from near enough, the cloth lands.
   bool landing = false;
+  constexpr double least_stride = 1e-2;
+  double stride = 1;  // of the way to land
   double landing_error = within_reach && !std::isfinite(options.effort_limit) ? 1e-3 * length : 0;
   std::optional<Neighbourhood> near;
   for (Index round = 0; round < options.rounds; ++round) {
@@ -198,7 +200,8 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
       near->set_damping(damping);
     }
     const Vector miss = miss_of(summary.flight);
-    const Vector step = landing ? near->landing(miss) : near->step(miss, weight * unit);
+    const Vector step =
+        landing ? Vector(stride * near->landing(miss)) : near->step(miss, weight * unit);
     aimed.aim_offset = moved(summary.aim_offset, directions, step);
     Rollout flight = rollout(*make(aimed), gain);
     ++summary.rollouts;
@@ -209,11 +212,15 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
     };
     if (landing) {
       const double left = flight.error.mean / summary.flight.error.mean;
+      const bool nearer = left < 1 - 0.3 * stride;
       const bool fresh = near->is_fresh();
-      if (left < 0.7) accept();
+      if (nearer) accept();
       if (left < 0.25) continue;
-      if (left < 0.7 || !fresh) {
+      if (nearer || !fresh) {
         near.reset();
+        stride = std::min(1.0, 4 * stride);
+      } else if (stride > least_stride) {
+        stride /= 4;
       } else {
         landing = false;
         landing_error = 0.3 * summary.flight.error.mean;
