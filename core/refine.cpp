@@ -58,7 +58,8 @@ std::vector<Points> moved(std::vector<Points> offset, const AimDirections& direc
 ///     |F + F'(Δ + δ)|² + w²·|miss − X'δ|² + μ²·|δ|²,
 /// so, with H = F'ᵀF' + μ²I and g = F'ᵀ(F + F'Δ),
 ///     δ = H⁻¹(X'ᵀλ − g),   (X'H⁻¹X'ᵀ + w⁻²)·λ = miss + X'H⁻¹g,
-/// which stays well-conditioned as w grows and arrival becomes a condition.
+/// which stays well-conditioned as w grows and arrival becomes a condition. A landing lets the
+/// forces be, g = 0, and takes away the miss with the least change to them and to the aim.
 class Neighbourhood {
  public:
   explicit Neighbourhood(FlightTangent tangent)
@@ -86,6 +87,13 @@ class Neighbourhood {
     system.diagonal().array() += 1 / (weight * weight);
     const Vector pull = system.ldlt().solve(miss + tangent_.arrival * down);
     return across_ * pull - down;
+  }
+
+  Vector landing(const Vector& miss) const {
+    constexpr double rounding = 1e-14;  // no offset moves the centroid
+    Eigen::MatrixXd system = reach_;
+    system.diagonal().array() += rounding * reach_.diagonal().maxCoeff();
+    return across_ * system.ldlt().solve(miss);
   }
 
   /// By how much a step lets the objective fall.
@@ -161,8 +169,14 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
                                     ? std::numeric_limits<double>::infinity()
                                     : 1e4;
   double growth = 4;
-  constexpr double least_damping = 1e-3, most_damping = 10;
+  constexpr double least_damping = 1e-3, landing_damping = 1, most_damping = 1e3;
   double damping = least_damping;
+  // Where the tangent no longer foretells what effort can be spared, little of it is left to spare;
+  // from near enough, the cloth lands.
+  bool landing = false;
+  constexpr double least_stride = 1e-2;
+  double stride = 1;  // of the way to land
+  double landing_error = within_reach && !std::isfinite(options.effort_limit) ? 1e-3 * length : 0;
   std::optional<Neighbourhood> near;
   for (Index round = 0; round < options.rounds; ++round) {
     if (summary.flight.error.mean <= options.tolerance * length) break;
@@ -186,10 +200,33 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
       near->set_damping(damping);
     }
     const Vector miss = miss_of(summary.flight);
-    const Vector step = near->step(miss, weight * unit);
+    const Vector step =
+        landing ? Vector(stride * near->landing(miss)) : near->step(miss, weight * unit);
     aimed.aim_offset = moved(summary.aim_offset, directions, step);
     Rollout flight = rollout(*make(aimed), gain);
     ++summary.rollouts;
+    const auto accept = [&] {
+      near->go(step);
+      summary.flight = std::move(flight);
+      summary.aim_offset = aimed.aim_offset;
+    };
+    if (landing) {
+      const double left = flight.error.mean / summary.flight.error.mean;
+      const bool nearer = left < 1 - 0.3 * stride;
+      const bool fresh = near->is_fresh();
+      if (nearer) accept();
+      if (left < 0.25) continue;
+      if (nearer || !fresh) {
+        near.reset();
+        stride = std::min(1.0, 4 * stride);
+      } else if (stride > least_stride) {
+        stride /= 4;
+      } else {
+        landing = false;
+        landing_error = 0.3 * summary.flight.error.mean;
+      }
+      continue;
+    }
     const double kept = (objective(summary.flight, weight) - objective(flight, weight)) /
                         near->promise(miss, weight * unit, step);
     if (kept > 0.1) {
@@ -204,14 +241,20 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
         weight *= growth;
         continue;
       }
-      near->go(step);
-      summary.flight = std::move(flight);
-      summary.aim_offset = aimed.aim_offset;
+      accept();
       if (within || summary.flight.control_effort <= options.effort_limit) weight *= growth;
       if (kept < 0.5) {
         near.reset();
       } else if (damping > least_damping) {
         near->set_damping(damping = std::max(least_damping, 0.3 * damping));
+      }
+    } else if (summary.flight.error.mean < landing_error) {
+      landing = true;
+      damping = std::max(damping, landing_damping);
+      if (near->is_fresh()) {
+        near->set_damping(damping);
+      } else {
+        near.reset();
       }
     } else if (!near->is_fresh()) {
       near.reset();

@@ -437,25 +437,40 @@ auto flight_of(const ChainPlan& plan, const FlightGains& gains) {
   return plan.damping_ratio > 0 ? fly_lanes<Control::damped, T> : fly_lanes<Control::springs, T>;
 }
 
-/// The number whose value is the same in every lane and whose slope differs.
-HWY_INLINE Dual<Pack> with_slopes(double value, Pack slope) { return {Pack(value), slope}; }
+// ---- derivatives of a flight along as many directions as a pair of packs has lanes -------------
+
+using Slopes = Pair<Pack>;
+HWY_INLINE Index lanes_of(Slopes) { return 2 * lanes_of(Pack()); }
+HWY_INLINE Slopes load_lanes(const double* values, Slopes) {
+  return {load_lanes(values, Pack()), load_lanes(values + lanes_of(Pack()), Pack())};
+}
+HWY_INLINE void store_lanes(Slopes number, double* values) {
+  store_lanes(number.first, values);
+  store_lanes(number.second, values + lanes_of(Pack()));
+}
+constexpr std::size_t most_slopes = 2 * HWY_MAX_BYTES / sizeof(double);
+
+/// The number whose value is the same in every lane and whose slopes differ.
+HWY_INLINE Dual<Pack, Slopes> with_slopes(double value, Slopes slopes) {
+  return {Pack(value), slopes};
+}
 
 template <bool damped_control>
-void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* initial,
-                     const double* launch_velocity, double gain, const Directions& directions,
-                     std::span<const Index> samples, const Tangents& tangents) {
-  using T = Dual<Pack>;
+void fly_along_lanes(const ChainPlan& plan, const FlightState& start, double gain,
+                     const Directions& directions, std::span<const Index> samples,
+                     const Tangents& tangents) {
+  using T = Dual<Pack, Slopes>;
   const Index n = plan.particles;
   const auto size = static_cast<std::size_t>(n);
   const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
-  const std::unique_ptr<Vec2<Pack>[]> aim(new Vec2<Pack>[size]);
+  const std::unique_ptr<Vec2<Slopes>[]> aim(new Vec2<Slopes>[size]);
   const std::unique_ptr<Segment<T>[]> segments(new Segment<T>[size]);
   // A value of each direction, a direction a lane.
   const auto across = [&](auto value_of) NUNO_INLINE_LAMBDA {
-    double values[HWY_MAX_BYTES / sizeof(double)] = {};
+    double values[most_slopes] = {};
     for (Index lane = 0; lane < directions.count; ++lane) values[lane] = value_of(lane);
-    return load_lanes(values, Pack());
+    return load_lanes(values, Slopes());
   };
   const auto coordinate = [&](const double* shapes, Index at) NUNO_INLINE_LAMBDA {
     return across([=](Index lane) NUNO_INLINE_LAMBDA { return shapes[lane * 2 * n + at]; });
@@ -465,26 +480,32 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
       return shares[static_cast<std::size_t>(directions.powers[lane])];
     });
   };
+  const auto keep = [&](Slopes slopes, double* to, Index stride) NUNO_INLINE_LAMBDA {
+    double values[most_slopes];
+    store_lanes(slopes, values);
+    for (Index lane = 0; lane < directions.count; ++lane) to[lane * stride] = values[lane];
+  };
   const T zero = Constant<T>::of(0);
   Sums<T> sums{{zero, zero}, {zero, zero}};
   for (Index i = n; i-- > 0;) {
     aim[i] = {coordinate(directions.shapes, 2 * i), coordinate(directions.shapes, 2 * i + 1)};
-    x[i] = {Constant<T>::of(initial[2 * i]), Constant<T>::of(initial[2 * i + 1])};
-    v[i] = {with_slopes(launch_velocity[2 * i], coordinate(directions.launches, 2 * i)),
-            with_slopes(launch_velocity[2 * i + 1], coordinate(directions.launches, 2 * i + 1))};
+    x[i] = {Constant<T>::of(start.positions(0, i)), Constant<T>::of(start.positions(1, i))};
+    v[i] = {with_slopes(start.velocities(0, i), coordinate(directions.launches, 2 * i)),
+            with_slopes(start.velocities(1, i), coordinate(directions.launches, 2 * i + 1))};
     sums.position = sums.position + x[i];
     sums.velocity = sums.velocity + v[i];
   }
 
   const double damping = shape_damping(plan.damping_ratio, gain, plan.particle_mass);
   const T particles = Constant<T>::of(static_cast<double>(n));
-  const Index sampled = static_cast<Index>(samples.size());
-  Index sample = 0;
-  for (Index step = 0; step < plan.steps; ++step) {
+  const auto sampled = static_cast<Index>(samples.size());
+  Index sample = std::ranges::lower_bound(samples, start.step) - samples.begin();
+  ReferenceMotion reference = start.reference;
+  for (Index step = start.step; step < plan.steps; ++step) {
     const double* shape = reference.shape().data();
     const double* motion = reference.velocity().data();
-    const Pack share = of_power(reference.aim_shares());
-    const Pack rate = of_power(reference.aim_rates());
+    const Slopes share = of_power(reference.aim_shares());
+    const Slopes rate = of_power(reference.aim_rates());
     const bool keeps = sample < sampled && samples[static_cast<std::size_t>(sample)] == step;
     const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
     const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
@@ -502,15 +523,9 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
             force = force + Vec2<T>{scale(damping, lag.x), scale(damping, lag.y)};
           }
           if (keeps) {
-            const Index at = 2 * (sample * n + j);
-            const Index stride = 2 * n * sampled;
-            if (tangents.forces != nullptr) {
-              write_lanes(force.x.value, tangents.forces + at, nullptr, 0, 1);
-              write_lanes(force.y.value, tangents.forces + at + 1, nullptr, 0, 1);
-            }
-            double* slopes = tangents.forces_tangent + at;
-            write_lanes(force.x.slope, slopes, nullptr, stride, directions.count);
-            write_lanes(force.y.slope, slopes + 1, nullptr, stride, directions.count);
+            double* slopes = tangents.forces + 2 * (sample * n + j);
+            keep(force.x.slope, slopes, 2 * n * sampled);
+            keep(force.y.slope, slopes + 1, 2 * n * sampled);
           }
           return force;
         });
@@ -518,27 +533,17 @@ void fly_along_lanes(const ChainPlan& plan, ReferenceMotion reference, const dou
     reference.advance();
   }
   for (Index i = 0; i < n; ++i) {
-    double* slopes = tangents.arrival + 2 * i;
-    write_lanes(x[i].x.slope, slopes, nullptr, 2 * n, directions.count);
-    write_lanes(x[i].y.slope, slopes + 1, nullptr, 2 * n, directions.count);
+    keep(x[i].x.slope, tangents.arrival + 2 * i, 2 * n);
+    keep(x[i].y.slope, tangents.arrival + 2 * i + 1, 2 * n);
   }
 }
 
-void fly_along_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-                   const double* launch_velocity, double gain, const Directions& directions,
-                   std::span<const Index> samples, const Tangents& tangents) {
+void fly_along_all(const ChainPlan& plan, const FlightState& start, double gain,
+                   const Directions& directions, std::span<const Index> samples,
+                   const Tangents& tangents) {
   const auto flight =
       plan.damping_ratio > 0 && gain > 0 ? fly_along_lanes<true> : fly_along_lanes<false>;
-  const Index size = 2 * plan.particles;
-  const Index forces = size * static_cast<Index>(samples.size());
-  for (Index first = 0; first < directions.count; first += lanes_of(Pack())) {
-    flight(plan, reference, initial, launch_velocity, gain,
-           {std::min(lanes_of(Pack()), directions.count - first), directions.shapes + first * size,
-            directions.powers + first, directions.launches + first * size},
-           samples,
-           {tangents.arrival + first * size, first == 0 ? tangents.forces : nullptr,
-            tangents.forces_tangent + first * forces});
-  }
+  flight(plan, start, gain, directions, samples, tangents);
 }
 
 void fly_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
@@ -558,6 +563,7 @@ void fly_all(const ChainPlan& plan, const ReferenceMotion& reference, const doub
 }
 
 Index lanes() { return lanes_of(Pack()); }
+Index slopes() { return lanes_of(Slopes()); }
 const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
 
 }  // namespace HWY_NAMESPACE
@@ -571,6 +577,7 @@ HWY_EXPORT(step_scalar);
 HWY_EXPORT(fly_all);
 HWY_EXPORT(fly_along_all);
 HWY_EXPORT(lanes);
+HWY_EXPORT(slopes);
 HWY_EXPORT(instruction_set);
 
 FlightGains FlightGains::part(Index first, Index count) const {
@@ -593,14 +600,15 @@ void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* 
   (plan, reference, initial, launch_velocity, gains, finals, tangents);
 }
 
-void fly_along(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-               const double* launch_velocity, double gain, const Directions& directions,
-               std::span<const Index> samples, const Tangents& tangents) {
-  HWY_DYNAMIC_DISPATCH(fly_along_all)
-  (plan, reference, initial, launch_velocity, gain, directions, samples, tangents);
+void fly_along(const ChainPlan& plan, const FlightState& start, double gain,
+               const Directions& directions, std::span<const Index> samples,
+               const Tangents& tangents) {
+  assert(directions.count <= slopes());
+  HWY_DYNAMIC_DISPATCH(fly_along_all)(plan, start, gain, directions, samples, tangents);
 }
 
 Index lanes() { return HWY_DYNAMIC_DISPATCH(lanes)(); }
+Index slopes() { return HWY_DYNAMIC_DISPATCH(slopes)(); }
 std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
 
 }  // namespace nuno::native

@@ -68,29 +68,40 @@ struct FlightGains {
 void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
          const double* launch_velocity, const FlightGains& gains, double* finals, double* tangents);
 
+/// A flight on its way, before a step.
+struct FlightState {
+  Index step = 0;
+  ReferenceMotion reference;
+  Points positions;
+  Points velocities;
+};
+
 /// Directions to change a flight in, one after another.
 struct Directions {
   Index count = 0;
   const double* shapes = nullptr;    ///< of the aim offset [2N] each
   const Index* powers = nullptr;     ///< which of aim_powers they are for
-  const double* launches = nullptr;  ///< what they make of the launch velocity [2N] each
+  const double* launches = nullptr;  ///< what they make of the velocity at the start [2N] each
 };
 
-/// What fly_along writes, of each direction after another where it says each.
+/// Derivatives that fly_along writes, of each direction after another.
 struct Tangents {
-  double* arrival = nullptr;         ///< derivative of the final positions [2N] each
-  double* forces = nullptr;          ///< control forces at the samples [2N × samples], or null
-  double* forces_tangent = nullptr;  ///< their derivative [2N × samples] each
+  double* arrival = nullptr;  ///< of the final positions [2N] each
+  double* forces = nullptr;   ///< of the control forces at the samples [2N × samples] each
 };
 
-/// One flight at one gain and its derivatives along `directions`. `samples` are the steps,
-/// ascending, whose control forces are kept.
-void fly_along(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-               const double* launch_velocity, double gain, const Directions& directions,
-               std::span<const Index> samples, const Tangents& tangents);
+/// The derivatives, along at most slopes() directions, of the rest of a flight at one gain, which
+/// they do not touch before `start`. `samples` are the steps, ascending, whose control forces are
+/// asked for; of those before the start nothing is written.
+void fly_along(const ChainPlan& plan, const FlightState& start, double gain,
+               const Directions& directions, std::span<const Index> samples,
+               const Tangents& tangents);
 
 /// Gains that `fly` takes side by side, one a SIMD lane.
 Index lanes();
+
+/// Directions that `fly_along` takes side by side.
+Index slopes();
 
 /// The instruction set in use, for people.
 std::string instruction_set();

@@ -4,6 +4,7 @@
 #include <nuno/launch.h>
 #include <nuno/parallel.h>
 #include <nuno/rollout.h>
+#include <nuno/shape_control.h>
 
 #include <fmt/format.h>
 
@@ -148,7 +149,6 @@ class NativeBackend final : public Backend {
 
   FlightTangent flight_tangent(double gain, const AimDirections& directions) const override {
     const ReferenceMotion reference(problem(), time_step());
-    const Points velocities = launch(*this);
     const Points& initial = problem().chain.initial;
     const Index size = initial.size();
     const Index count = directions.shapes.cols();
@@ -184,16 +184,16 @@ class NativeBackend final : public Backend {
     const Index forces = size * static_cast<Index>(samples.size());
     tangent.arrival.resize(size, count);
     tangent.forces.resize(forces);
-    tangent.forces_tangent.resize(forces, count);
-    const Index batch = lanes();
+    tangent.forces_tangent.setZero(forces, count);
+    const std::vector<FlightState> starts = fly_once(gain, samples, tangent.forces);
+    const Index batch = slopes();
     parallel_for((count + batch - 1) / batch, [&](Index b) {
       const Index first = b * batch;
-      fly_along(plan_, reference, initial.data(), velocities.data(), gain,
-                {std::min(batch, count - first), shapes.col(first).data(),
-                 directions.powers.data() + first, launches.col(first).data()},
-                samples,
-                {tangent.arrival.col(first).data(), b == 0 ? tangent.forces.data() : nullptr,
-                 tangent.forces_tangent.col(first).data()});
+      const Index here = std::min(batch, count - first);
+      const Index* powers = directions.powers.data() + first;
+      fly_along(plan_, starts[static_cast<std::size_t>(*std::min_element(powers, powers + here))],
+                gain, {here, shapes.col(first).data(), powers, launches.col(first).data()}, samples,
+                {tangent.arrival.col(first).data(), tangent.forces_tangent.col(first).data()});
     });
     const Eigen::Map<const Vector> weight(weights.data(), static_cast<Index>(weights.size()));
     const Vector each = weight.transpose().replicate(size, 1).reshaped();
@@ -224,6 +224,33 @@ class NativeBackend final : public Backend {
     std::vector<double> values_;
     std::vector<Index> seeds_;
   };
+
+  /// The control forces at the samples, and the flight where each of aim_powers begins to be felt.
+  std::vector<FlightState> fly_once(double gain, std::span<const Index> samples,
+                                    Vector& forces) const {
+    constexpr double felt = 1e-12;  // of the rate at which an offset comes in, times t₀
+    const ShapeControl control(problem(), gain);
+    ReferenceMotion reference(problem(), time_step());
+    ChainSimulation cloth(plan_, problem().chain.initial, launch(*this));
+    Points force = Points::Zero(2, plan_.particles);
+    std::vector<FlightState> starts;
+    std::size_t sample = 0;
+    for (Index step = 0; starts.size() < aim_powers.size() || sample < samples.size(); ++step) {
+      while (starts.size() < aim_powers.size() &&
+             (reference.aim_rates()[starts.size()] * problem().arrival_time > felt ||
+              step + 1 == steps())) {
+        starts.push_back({step, reference, cloth.positions(), cloth.velocities()});
+      }
+      if (control.pulls()) control.pull(reference, cloth.positions(), cloth.velocities(), force);
+      if (sample < samples.size() && samples[sample] == step) {
+        forces.segment(static_cast<Index>(sample++) * force.size(), force.size()) =
+            force.reshaped();
+      }
+      cloth.step(force);
+      reference.advance();
+    }
+    return starts;
+  }
 
   std::vector<ErrorSample> fly_over(const FlightGains& gains, const Points& initial,
                                     bool with_slopes) const {

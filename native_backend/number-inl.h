@@ -150,37 +150,87 @@ HWY_INLINE T angle(T sine, T cosine) {
   return where_greater(cosine, hardly, slight, any);
 }
 
-// ---- dual numbers ---------------------------------------------------------------------------
+// ---- two numbers side by side ---------------------------------------------------------------
 
-/// A value and its derivative with respect to one parameter.
+/// Slopes along two directions, which share the value's own arithmetic.
 template <typename T>
-struct Dual {
-  T value;
-  T slope;
+struct Pair {
+  T first;
+  T second;
 
-  HWY_INLINE Dual() = default;
-  HWY_INLINE Dual(T v, T s) : value(v), slope(s) {}
+  HWY_INLINE Pair() = default;
+  HWY_INLINE Pair(T a, T b) : first(a), second(b) {}
+  HWY_INLINE Pair(double value) : first(value), second(value) {}
 };
 
 template <typename T>
-HWY_INLINE Dual<T> operator+(Dual<T> a, Dual<T> b) {
+HWY_INLINE Pair<T> operator+(Pair<T> a, Pair<T> b) {
+  return {a.first + b.first, a.second + b.second};
+}
+template <typename T>
+HWY_INLINE Pair<T> operator-(Pair<T> a, Pair<T> b) {
+  return {a.first - b.first, a.second - b.second};
+}
+template <typename T>
+HWY_INLINE Pair<T> operator*(Pair<T> a, Pair<T> b) {
+  return {a.first * b.first, a.second * b.second};
+}
+template <typename T>
+HWY_INLINE Pair<T> operator*(T a, Pair<T> b) {
+  return {a * b.first, a * b.second};
+}
+template <typename T>
+HWY_INLINE Pair<T> operator/(Pair<T> a, T b) {
+  return {a.first / b, a.second / b};
+}
+template <typename T>
+HWY_INLINE Pair<T> mul_add(T a, Pair<T> b, Pair<T> c) {
+  return {mul_add(a, b.first, c.first), mul_add(a, b.second, c.second)};
+}
+template <typename T>
+HWY_INLINE Pair<T> mul_add(Pair<T> a, T b, Pair<T> c) {
+  return mul_add(b, a, c);
+}
+template <typename T>
+HWY_INLINE Pair<T> neg_mul_add(T a, Pair<T> b, Pair<T> c) {
+  return {neg_mul_add(a, b.first, c.first), neg_mul_add(a, b.second, c.second)};
+}
+template <typename T>
+HWY_INLINE Pair<T> neg_mul_add(Pair<T> a, T b, Pair<T> c) {
+  return neg_mul_add(b, a, c);
+}
+
+// ---- dual numbers ---------------------------------------------------------------------------
+
+/// A value and its derivative with respect to one parameter, or to two where S is a Pair.
+template <typename T, typename S = T>
+struct Dual {
+  T value;
+  S slope;
+
+  HWY_INLINE Dual() = default;
+  HWY_INLINE Dual(T v, S s) : value(v), slope(s) {}
+};
+
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> operator+(Dual<T, S> a, Dual<T, S> b) {
   return {a.value + b.value, a.slope + b.slope};
 }
-template <typename T>
-HWY_INLINE Dual<T> operator-(Dual<T> a, Dual<T> b) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> operator-(Dual<T, S> a, Dual<T, S> b) {
   return {a.value - b.value, a.slope - b.slope};
 }
-template <typename T>
-HWY_INLINE Dual<T> operator*(Dual<T> a, Dual<T> b) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> operator*(Dual<T, S> a, Dual<T, S> b) {
   return {a.value * b.value, mul_add(a.slope, b.value, a.value * b.slope)};
 }
-template <typename T>
-HWY_INLINE Dual<T> mul_add(Dual<T> a, Dual<T> b, Dual<T> c) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> mul_add(Dual<T, S> a, Dual<T, S> b, Dual<T, S> c) {
   return {mul_add(a.value, b.value, c.value),
           mul_add(a.slope, b.value, mul_add(a.value, b.slope, c.slope))};
 }
-template <typename T>
-HWY_INLINE Dual<T> neg_mul_add(Dual<T> a, Dual<T> b, Dual<T> c) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> neg_mul_add(Dual<T, S> a, Dual<T, S> b, Dual<T, S> c) {
   return {neg_mul_add(a.value, b.value, c.value),
           neg_mul_add(a.slope, b.value, neg_mul_add(a.value, b.slope, c.slope))};
 }
@@ -190,19 +240,19 @@ template <typename T>
 HWY_INLINE T reciprocal_of_difference(T c, T a, T b) {
   return T(1.0) / neg_mul_add(a, b, c);
 }
-template <typename T>
-HWY_INLINE Dual<T> reciprocal_of_difference(T c, Dual<T> a, Dual<T> b) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> reciprocal_of_difference(T c, Dual<T, S> a, Dual<T, S> b) {
   const T value = reciprocal_of_difference(c, a.value, b.value);
   return {value, value * value * mul_add(a.slope, b.value, a.value * b.slope)};
 }
-template <typename T>
-HWY_INLINE Dual<T> rsqrt(Dual<T> a) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> rsqrt(Dual<T, S> a) {
   const T value = rsqrt(a.value);
   return {value, T(-0.5) * value * (value * value) * a.slope};
 }
 /// Of a unit vector: dθ = cosine·d(sine) − sine·d(cosine).
-template <typename T>
-HWY_INLINE Dual<T> angle(Dual<T> sine, Dual<T> cosine) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> angle(Dual<T, S> sine, Dual<T, S> cosine) {
   return {angle(sine.value, cosine.value),
           neg_mul_add(sine.value, cosine.slope, cosine.value * sine.slope)};
 }
@@ -211,8 +261,8 @@ template <typename T>
 HWY_INLINE T divide(T a, T b) {
   return a / b;
 }
-template <typename T>
-HWY_INLINE Dual<T> divide(Dual<T> a, Dual<T> b) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> divide(Dual<T, S> a, Dual<T, S> b) {
   return {a.value / b.value, a.slope / b.value};
 }
 
@@ -224,10 +274,10 @@ struct Constant {
   using Value = T;
   static HWY_INLINE T of(double value) { return T(value); }
 };
-template <typename T>
-struct Constant<Dual<T>> {
+template <typename T, typename S>
+struct Constant<Dual<T, S>> {
   using Value = T;
-  static HWY_INLINE Dual<T> of(double value) { return {T(value), T(0.0)}; }
+  static HWY_INLINE Dual<T, S> of(double value) { return {T(value), S(0.0)}; }
 };
 
 /// a·b + c with a constant a: no slope to carry.
@@ -235,16 +285,16 @@ template <typename T>
 HWY_INLINE T scale_add(double a, T b, T c) {
   return mul_add(T(a), b, c);
 }
-template <typename T>
-HWY_INLINE Dual<T> scale_add(double a, Dual<T> b, Dual<T> c) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> scale_add(double a, Dual<T, S> b, Dual<T, S> c) {
   return {mul_add(T(a), b.value, c.value), mul_add(T(a), b.slope, c.slope)};
 }
 template <typename T>
 HWY_INLINE T scale(double a, T b) {
   return T(a) * b;
 }
-template <typename T>
-HWY_INLINE Dual<T> scale(double a, Dual<T> b) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> scale(double a, Dual<T, S> b) {
   return {T(a) * b.value, T(a) * b.slope};
 }
 /// a + b with a constant a.
@@ -252,8 +302,8 @@ template <typename T>
 HWY_INLINE T shift(double a, T b) {
   return T(a) + b;
 }
-template <typename T>
-HWY_INLINE Dual<T> shift(double a, Dual<T> b) {
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> shift(double a, Dual<T, S> b) {
   return {T(a) + b.value, b.slope};
 }
 

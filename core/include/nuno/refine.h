@@ -42,11 +42,13 @@ double following_gain(const Backend& backend);
 ///
 /// Gauss–Newton on effort² + weight²·error² while the weight grows, from a flight in which effort
 /// counts to one that arrives; where it stops on the way, at the tolerance or at the effort limit,
-/// stands a best trade of one for the other. A target whose segments are not as long as the cloth's
-/// is out of reach: it ends where coming nearer would cost more than it is worth. `make` flies;
-/// `model`, which may be another engine, gives the tangents (exact for the native chain), each used
-/// as long as it foretells what happens: an answer of the chain is corrected on an engine that
-/// knows no derivative. Starts from the problem's aim offset.
+/// stands a best trade of one for the other. Less than 1e-3·L from a target within reach, once the
+/// tangent no longer tells what effort could be spared, the rest of the error alone is removed,
+/// with the least change to forces and offset. A target whose segments are not as long as the
+/// cloth's is out of reach: it ends where coming nearer would cost more than it is worth. `make`
+/// flies; `model`, which may be another engine, gives the tangents (exact for the native chain),
+/// each used as long as it foretells what happens: an answer of the chain is corrected on an engine
+/// that knows no derivative. Starts from the problem's aim offset.
 RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options = {});
 
