@@ -39,8 +39,14 @@ void turn(Points& vectors, const Points& rotation) {
 }
 
 AimShares aim_shares_at(double time) {
+  static_assert(aim_powers == std::array{1, 6, 36, 216}, "each is six times the one before");
   AimShares shares;
-  for (std::size_t k = 0; k < shares.size(); ++k) shares[k] = std::pow(time, aim_powers[k]);
+  double share = time;
+  for (double& each : shares) {
+    each = share;
+    const double squared = share * share;
+    share = squared * squared * squared;
+  }
   return shares;
 }
 

@@ -33,7 +33,7 @@ AimDirections aim_directions(Index particles) {
                                    (static_cast<double>(i) + 0.5) / static_cast<double>(particles));
         }
         directions.powers.push_back(static_cast<Index>(power));
-        shapes.push_back(shape.reshaped());
+        shapes.emplace_back(shape.reshaped());
       }
     }
   }

@@ -262,18 +262,19 @@ template <typename T>
 HWY_INLINE Index lanes_of(Dual<T>) {
   return lanes_of(T());
 }
-/// Lanes of a coordinate: value to `finals`, slope to `tangents`, `stride` apart.
+/// Lanes of coordinate `at`: value to `finals`, slope to `tangents`, `stride` apart.
 template <typename T>
-HWY_INLINE void write_lanes(T number, double* finals, double*, Index stride, Index count) {
+HWY_INLINE void write_lanes(T number, double* finals, double*, Index at, Index stride,
+                            Index count) {
   double values[HWY_MAX_BYTES / sizeof(double)] = {};
   store_lanes(number, values);
-  for (Index lane = 0; lane < count; ++lane) finals[lane * stride] = values[lane];
+  for (Index lane = 0; lane < count; ++lane) finals[at + lane * stride] = values[lane];
 }
 template <typename T>
-HWY_INLINE void write_lanes(Dual<T> number, double* finals, double* tangents, Index stride,
-                            Index count) {
-  write_lanes(number.value, finals, nullptr, stride, count);
-  write_lanes(number.slope, tangents, nullptr, stride, count);
+HWY_INLINE void write_lanes(Dual<T> number, double* finals, double* tangents, Index at,
+                            Index stride, Index count) {
+  write_lanes(number.value, finals, nullptr, at, stride, count);
+  write_lanes(number.slope, tangents, nullptr, at, stride, count);
 }
 
 /// β = 2ζ·√(α·m), shape_damping of the core; its slope is β/2α.
@@ -425,8 +426,8 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
   }
   const Index count = gains.flights();
   for (Index i = 0; i < n; ++i) {
-    write_lanes(x[i].x, finals + 2 * i, tangents + 2 * i, 2 * n, count);
-    write_lanes(x[i].y, finals + 2 * i + 1, tangents + 2 * i + 1, 2 * n, count);
+    write_lanes(x[i].x, finals, tangents, 2 * i, 2 * n, count);
+    write_lanes(x[i].y, finals, tangents, 2 * i + 1, 2 * n, count);
   }
 }
 

@@ -175,7 +175,8 @@ class NativeBackend final : public Backend {
       if (end == sampled) continue;
       samples.push_back((sampled + end) / 2);
       weights.push_back(
-          std::sqrt(static_cast<double>(end - sampled) / static_cast<double>(steps() * size / 2)) /
+          std::sqrt(static_cast<double>(end - sampled) /
+                    (static_cast<double>(steps()) * static_cast<double>(initial.cols()))) /
           effort_unit(problem()));
       sampled = end;
     }

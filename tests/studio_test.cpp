@@ -376,8 +376,7 @@ TEST_F(Studio, RefusesWithTheMessagesOfTheCommandLine) {
   Json fine = Json::parse(small_scene);
   fine["particles"] = 2000;
   fine["cloth"]["hinge_stiffness"] = 0;
-  EXPECT_NE(refused("/api/optimize?refine=1", fine.dump(), 400)
-                .find("the most to aim off with"),
+  EXPECT_NE(refused("/api/optimize?refine=1", fine.dump(), 400).find("the most to aim off with"),
             std::string::npos);
   EXPECT_NE(refused("/api/nothing", small_scene, 404), "");
 }

@@ -168,6 +168,7 @@ double work_of(const Backend& backend) {
 
 /// Throws InputError for a scene that would keep the page waiting for minutes.
 void require_quick(const SceneFile& file, const Backend& backend, const Options& options) {
+  const double particles = static_cast<double>(file.scene.particles);
   const double most =
       backend.name() == "native" ? most_particle_steps_native : most_particle_steps_box2d;
   if (work_of(backend) > most) {
