@@ -4,6 +4,7 @@
 #include <nuno/robust.h>
 #include <nuno/trade_off.h>
 
+#include <atomic>
 #include <chrono>
 
 #include "commands.h"
@@ -33,22 +34,25 @@ Optimization search(const OptimizeOptions& options, const SceneFile& file, const
 Optimization trade(const OptimizeOptions& options, const SceneFile& file, const Backend& backend) {
   const auto start = std::chrono::steady_clock::now();
   Optimization found{"trade-off", {}};
-  found.trade_off = trade_off(backend);
   OptimizeSummary& summary = found.summary;
-  summary.evaluations = static_cast<Index>(found.trade_off.size());
+  std::atomic<Index> rollouts = 0;
+  const auto count = [&] { ++rollouts; };
+  found.trade_off = trade_off(backend, 64, count);
+  summary.evaluations = rollouts;
   if (found.trade_off.empty()) return found;  // every rollout diverged
   TradeOffPoint point;
   if (options.error_limit) {
     const double limit = *options.error_limit * file.problem.chain.length;
-    const auto kept = least_effort(backend, found.trade_off, limit);
+    const auto kept = least_effort(backend, found.trade_off, limit, count);
     point = kept.value_or(found.trade_off.back());
     summary.status = kept ? OptimizeStatus::converged : OptimizeStatus::budget;
     summary.reason = kept ? "the least effort within the error limit"
                           : "no gain keeps the error limit; this is the nearest";
   } else {
-    point = least_error(backend, found.trade_off, *options.effort_limit);
+    point = least_error(backend, found.trade_off, *options.effort_limit, count);
     summary.reason = "the least error within the effort limit";
   }
+  summary.evaluations = rollouts;
   summary.gain = point.gain;
   summary.error = point.error;
   for (const TradeOffPoint& at : found.trade_off) summary.history.push_back({at.gain, at.error});

@@ -582,6 +582,12 @@ TEST_F(Result, OfSeveralCoefficientsCanBeFlownAgain) {
   }
 }
 
+TEST_F(Result, OfALimitCountsEveryRollout) {
+  const Json result = simulated({"optimize", scene("s-curve-32"), "--effort-limit", "0.1"});
+  // Launch only, 64 gains, and 30 halvings between the two about the limit.
+  EXPECT_EQ(result["optimization"]["evaluations"], 1 + 64 + 30);
+}
+
 TEST_F(Result, OfAimingOffWithinALimitIsNoWorseThanOfTheGainAlone) {
   Json morph = read_json(scene("s-curve-32"));
   morph["reference"] = "morph";

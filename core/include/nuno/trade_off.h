@@ -26,14 +26,15 @@ std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count = 64,
                                      const std::function<void()>& before_rollout = {});
 
 /// The point of least effort whose error is at most `error_limit` [m], between the points of
-/// `curve` too; nothing if no point is as near.
+/// `curve` too; nothing if no point is as near. `before_rollout` as in trade_off.
 std::optional<TradeOffPoint> least_effort(const Backend& backend,
                                           const std::vector<TradeOffPoint>& curve,
-                                          double error_limit);
+                                          double error_limit,
+                                          const std::function<void()>& before_rollout = {});
 
 /// The point of least error whose effort is at most `effort_limit`, between the points of `curve`
-/// too.
+/// too. `before_rollout` as in trade_off.
 TradeOffPoint least_error(const Backend& backend, const std::vector<TradeOffPoint>& curve,
-                          double effort_limit);
+                          double effort_limit, const std::function<void()>& before_rollout = {});
 
 }  // namespace nuno
