@@ -449,7 +449,7 @@ HWY_INLINE void store_lanes(Slopes number, double* values) {
   store_lanes(number.first, values);
   store_lanes(number.second, values + lanes_of(Pack()));
 }
-constexpr std::size_t most_slopes = 2 * HWY_MAX_BYTES / sizeof(double);
+constexpr std::size_t most_slopes = std::size_t{2} * HWY_MAX_BYTES / sizeof(double);
 
 /// The number whose value is the same in every lane and whose slopes differ.
 HWY_INLINE Dual<Pack, Slopes> with_slopes(double value, Slopes slopes) {

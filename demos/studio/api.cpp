@@ -442,7 +442,7 @@ Answer film_answer(const std::string& body, const Options& options, const Turn& 
         fmt::format("{}: /arrival_time: {} is not <= {}, the longest film of the studio",
                     scene_name, time, longest_film));
   }
-  const Answer result = result_answer(body, options, turn);
+  Answer result = result_answer(body, options, turn);
   if (result.status != 200) return result;
   const TemporaryFolder folder;
   const std::string result_path = folder.file("result.json"), film = folder.file("film.mp4");
