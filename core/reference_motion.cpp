@@ -62,9 +62,12 @@ ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
     aim_rates_[k] = aim_powers[k] == 1 ? 1 / problem.arrival_time : 0;
   }
   if (!moves_) {
-    held_ = shape_of(problem.target);
-    place_shape();
-    velocity_ = Points::Zero(2, held_.cols());
+    shape_ = shape_of(problem.target);
+    if (!offsets_.empty()) {
+      held_ = shape_;
+      place_shape();
+    }
+    velocity_ = Points::Zero(2, shape_.cols());
     add_aim(aim_rates_, velocity_);
     return;
   }

@@ -59,7 +59,7 @@ class ReferenceMotion {
   AimShares aim_rates_ = {};
   Points shape_;
   Points velocity_;
-  Points held_;           ///< the target's shape, if it holds
+  Points held_;           ///< the target's shape, if it holds and is aimed off
   Vector length_;         ///< of the segments at s = 0 [N − 1]
   Vector length_change_;  ///< until s = 1
   Points direction_;      ///< unit vectors [2 × N − 1], as are the rotations (cosine, sine):
