@@ -27,5 +27,7 @@ target_compile_options(
     -Wconversion # a double that loses digits on its way into Box2D says so
     -Wnon-virtual-dtor
     -Wold-style-cast
-    -Woverloaded-virtual
-    $<$<AND:$<BOOL:${NUNO_WARNINGS_AS_ERRORS}>,$<NOT:$<BOOL:${NUNO_SANITIZE}>>>:-Werror>)
+    -Woverloaded-virtual)
+if(NUNO_WARNINGS_AS_ERRORS AND NOT NUNO_SANITIZE)
+  target_compile_options(nuno_warnings INTERFACE -Werror)
+endif()
