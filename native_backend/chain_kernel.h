@@ -9,7 +9,7 @@
 
 namespace nuno::native {
 
-/// The constants of one chain in the scheme of chain_kernel.cpp, the same for every gain.
+/// The constants of one chain in the scheme of chain_step-inl.h, the same for every gain.
 struct ChainPlan {
   Index particles = 0;
   Index steps = 0;
@@ -25,7 +25,7 @@ struct ChainPlan {
     double keep = 0;        ///< r [1]
     double fall = 0;        ///< q·g [m/s]
     double force = 0;       ///< p = q/m [s/kg]
-    double strain = 0;      ///< EA/c⁺, see chain_kernel.cpp
+    double strain = 0;      ///< EA/c⁺, see chain_step-inl.h
     double rate = 0;        ///< c⁻/c⁺
     double compliance = 0;  ///< 1/(c⁺·p) [1/m]
   };

@@ -8,6 +8,8 @@
 #define NUNO_NUMBER_INL_H_
 #endif
 
+#include <nuno/points.h>
+
 #include <hwy/highway.h>
 
 #include <array>
@@ -266,6 +268,28 @@ HWY_INLINE Dual<T, S> divide(Dual<T, S> a, Dual<T, S> b) {
   return {a.value / b.value, a.slope / b.value};
 }
 
+// ---- lanes --------------------------------------------------------------------------------------
+
+HWY_INLINE Index lanes_of(Real) { return 1; }
+HWY_INLINE Index lanes_of(Pack) { return static_cast<Index>(hn::Lanes(Pack::Tag())); }
+HWY_INLINE Index lanes_of(Pair<Pack>) { return 2 * lanes_of(Pack()); }
+template <typename T>
+HWY_INLINE Index lanes_of(Dual<T>) {
+  return lanes_of(T());
+}
+HWY_INLINE Real load_lanes(const double* values, Real) { return *values; }
+HWY_INLINE Pack load_lanes(const double* values, Pack) { return hn::LoadU(Pack::Tag(), values); }
+HWY_INLINE void store_lanes(Real number, double* values) { *values = number; }
+HWY_INLINE void store_lanes(Pack number, double* values) {
+  hn::StoreU(number.lanes, Pack::Tag(), values);
+}
+HWY_INLINE Pair<Pack> load_lanes(const double* values, Pair<Pack>) {
+  return {load_lanes(values, Pack()), load_lanes(values + lanes_of(Pack()), Pack())};
+}
+HWY_INLINE void store_lanes(Pair<Pack> number, double* values) {
+  store_lanes(number.first, values);
+  store_lanes(number.second, values + lanes_of(Pack()));
+}
 // ---- constants times numbers ----------------------------------------------------------------
 
 /// The number of type T with this value and no slope.

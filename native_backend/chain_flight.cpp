@@ -1,0 +1,275 @@
+// Steps of one chain, and whole flights at as many gains as a number has lanes.
+
+#include "chain_kernel.h"
+
+#include <nuno/shape_control.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "chain_flight.cpp"
+#include <hwy/foreach_target.h>  // compiles the rest of this file once for every target
+// clang-format off: it needs the target to be chosen
+#include "chain_step-inl.h"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace nuno::native {
+namespace HWY_NAMESPACE {
+
+void step_scalar(const ChainPlan& plan, bool first, const double* forces, double* positions,
+                 double* velocities, ScalarScratch& scratch) {
+  static_assert(sizeof(Vec2<Real>) == 2 * sizeof(double) &&
+                sizeof(Segment<Real>) == 4 * sizeof(double));
+  advance<false>(plan, first, reinterpret_cast<Vec2<Real>*>(positions),
+                 reinterpret_cast<Vec2<Real>*>(velocities),
+                 reinterpret_cast<Segment<Real>*>(scratch.values.data()),
+                 [forces](Index j, const Vec2<Real>&, const Vec2<Real>&) NUNO_INLINE_LAMBDA {
+                   return Vec2<Real>{forces[2 * j], forces[2 * j + 1]};
+                 });
+}
+
+// Numbers of a gain in every lane; `seeds` is 1 where the slope is with respect to it, 0 elsewhere.
+HWY_INLINE Real gain_number(const double* gains, const double*, Real) { return *gains; }
+HWY_INLINE Pack gain_number(const double* gains, const double*, Pack) {
+  return load_lanes(gains, Pack());
+}
+template <typename T>
+HWY_INLINE Dual<T> gain_number(const double* gains, const double* seeds, Dual<T>) {
+  return {load_lanes(gains, T()), load_lanes(seeds, T())};
+}
+
+/// Lanes of coordinate `at`: value to `finals`, slope to `tangents`, `stride` apart.
+template <typename T>
+HWY_INLINE void write_lanes(T number, double* finals, double*, Index at, Index stride,
+                            Index count) {
+  double values[HWY_MAX_BYTES / sizeof(double)] = {};
+  store_lanes(number, values);
+  for (Index lane = 0; lane < count; ++lane) finals[at + lane * stride] = values[lane];
+}
+template <typename T>
+HWY_INLINE void write_lanes(Dual<T> number, double* finals, double* tangents, Index at,
+                            Index stride, Index count) {
+  write_lanes(number.value, finals, nullptr, at, stride, count);
+  write_lanes(number.slope, tangents, nullptr, at, stride, count);
+}
+
+/// β = 2ζ·√(α·m), shape_damping of the core; its slope is β/2α.
+HWY_INLINE Real damping_number(const double* gains, const double*, double ratio, double mass,
+                               Real) {
+  return shape_damping(ratio, *gains, mass);
+}
+HWY_INLINE Pack damping_number(const double* gains, const double*, double ratio, double mass,
+                               Pack) {
+  double damping[HWY_MAX_BYTES / sizeof(double)] = {};
+  for (Index lane = 0; lane < lanes_of(Pack()); ++lane) {
+    damping[lane] = shape_damping(ratio, gains[lane], mass);
+  }
+  return load_lanes(damping, Pack());
+}
+template <typename T>
+HWY_INLINE Dual<T> damping_number(const double* gains, const double* seeds, double ratio,
+                                  double mass, Dual<T>) {
+  const T damping = damping_number(gains, seeds, ratio, mass, T());
+  const T gain = load_lanes(gains, T());
+  // At α = 0 the slope is infinite; there it is given as none.
+  const T slope = where_greater(gain, T(0.0), T(0.5) * damping / gain, T(0.0));
+  return {damping, load_lanes(seeds, T()) * slope};
+}
+
+/// What one group of modes is pulled with.
+template <typename T>
+struct GroupNumbers {
+  T gain, damping;
+};
+template <typename T>
+HWY_INLINE GroupNumbers<T> group_numbers(const ChainPlan& plan, const FlightGains& gains,
+                                         Index group) {
+  double values[HWY_MAX_BYTES / sizeof(double)] = {};
+  double seeds[HWY_MAX_BYTES / sizeof(double)] = {};
+  for (Index lane = 0; lane < lanes_of(T()); ++lane) {
+    const Index flight = std::min(lane, gains.flights() - 1);
+    values[lane] = gains.value(flight, group);
+    seeds[lane] = gains.seed(flight) == group ? 1 : 0;
+  }
+  return {gain_number(values, seeds, T()),
+          damping_number(values, seeds, plan.damping_ratio, plan.particle_mass, T())};
+}
+
+/// The part of shape control by which the low modes' gains differ from the last group's.
+template <typename T>
+struct LowModePull {
+  Index count = 0;
+  const double* shapes = nullptr;  ///< [modes × N]
+  GroupNumbers<T> excess[most_low_modes];
+  Vec2<T> amplitude[most_low_modes];  ///< of the force on each mode
+
+  HWY_INLINE void prepare(const ChainPlan& plan, const FlightGains& gains) {
+    const GroupNumbers<T> rest = group_numbers<T>(plan, gains, gains.groups() - 1);
+    count = gains.low_modes->count();
+    shapes = gains.low_modes->shapes.data();
+    for (Index j = 0; j < count; ++j) {
+      const Index group = gains.low_modes->group[static_cast<std::size_t>(j)];
+      const GroupNumbers<T> own = group_numbers<T>(plan, gains, group);
+      excess[j] = {own.gain - rest.gain, own.damping - rest.damping};
+    }
+  }
+
+  /// Projects what is missing of shape and velocity, `offset(i)` and `lag(i)` at particle i.
+  template <typename Offset, typename Lag>
+  HWY_INLINE void project(Index particles, Offset&& offset, Lag&& lag) {
+    const T zero = Constant<T>::of(0);
+    Vec2<T> spring[most_low_modes], dashpot[most_low_modes];
+    for (Index j = 0; j < count; ++j) spring[j] = dashpot[j] = {zero, zero};
+    for (Index i = 0; i < particles; ++i) {
+      const Vec2<T> o = offset(i);
+      const Vec2<T> u = lag(i);
+      for (Index j = 0; j < count; ++j) {
+        const double weight = shapes[i * count + j];
+        spring[j] = spring[j] + Vec2<T>{scale(weight, o.x), scale(weight, o.y)};
+        dashpot[j] = dashpot[j] + Vec2<T>{scale(weight, u.x), scale(weight, u.y)};
+      }
+    }
+    for (Index j = 0; j < count; ++j) {
+      amplitude[j] = excess[j].gain * spring[j] + excess[j].damping * dashpot[j];
+    }
+  }
+
+  HWY_INLINE Vec2<T> add_to(Vec2<T> force, Index i) const {
+    for (Index j = 0; j < count; ++j) {
+      const double weight = shapes[i * count + j];
+      force = force + Vec2<T>{scale(weight, amplitude[j].x), scale(weight, amplitude[j].y)};
+    }
+    return force;
+  }
+};
+
+/// What shape control is made of: springs, dashpots too, and both with gains by group.
+enum class Control { springs, damped, grouped };
+
+template <Control control, typename T>
+void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* initial,
+               const double* launch_velocity, const FlightGains& gains, double* finals,
+               double* tangents) {
+  constexpr bool damped_control = control != Control::springs;
+  const Index n = plan.particles;
+  const auto size = static_cast<std::size_t>(n);
+  const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
+  const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
+  const std::unique_ptr<Segment<T>[]> segments(new Segment<T>[size]);
+  const T zero = Constant<T>::of(0);
+  Sums<T> sums{{zero, zero}, {zero, zero}};
+  for (Index i = n; i-- > 0;) {
+    x[i] = {Constant<T>::of(initial[2 * i]), Constant<T>::of(initial[2 * i + 1])};
+    v[i] = {Constant<T>::of(launch_velocity[2 * i]), Constant<T>::of(launch_velocity[2 * i + 1])};
+    sums.position = sums.position + x[i];
+    sums.velocity = sums.velocity + v[i];
+  }
+
+  const GroupNumbers<T> rest = group_numbers<T>(plan, gains, gains.groups() - 1);
+  const T gain = rest.gain, damping = rest.damping;
+  LowModePull<T> low_modes;
+  if constexpr (control == Control::grouped) low_modes.prepare(plan, gains);
+  const T particles = Constant<T>::of(static_cast<double>(n));
+  for (Index step = 0; step < plan.steps; ++step) {
+    const double* shape = reference.shape().data();
+    const double* motion = reference.velocity().data();
+    const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
+    const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
+    const auto offset = [&](Index j, const Vec2<T>& position) NUNO_INLINE_LAMBDA {
+      return Vec2<T>{shift(shape[2 * j], center.x - position.x),
+                     shift(shape[2 * j + 1], center.y - position.y)};
+    };
+    const auto lag = [&](Index j, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
+      return Vec2<T>{shift(motion[2 * j], drift.x - velocity.x),
+                     shift(motion[2 * j + 1], drift.y - velocity.y)};
+    };
+    if constexpr (control == Control::grouped) {
+      low_modes.project(
+          n, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
+          [&](Index j) NUNO_INLINE_LAMBDA { return lag(j, v[j]); });
+    }
+    sums = advance<damped_control>(plan, step == 0, x.get(), v.get(), segments.get(),
+                                   [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity)
+                                       NUNO_INLINE_LAMBDA {
+                                         Vec2<T> force = gain * offset(j, position);
+                                         if constexpr (damped_control)
+                                           force = force + damping * lag(j, velocity);
+                                         if constexpr (control == Control::grouped)
+                                           force = low_modes.add_to(force, j);
+                                         return force;
+                                       });
+    reference.advance();
+  }
+  const Index count = gains.flights();
+  for (Index i = 0; i < n; ++i) {
+    write_lanes(x[i].x, finals, tangents, 2 * i, 2 * n, count);
+    write_lanes(x[i].y, finals, tangents, 2 * i + 1, 2 * n, count);
+  }
+}
+
+/// Gains by group take the damped path, whose dashpots may be nothing.
+template <typename T>
+auto flight_of(const ChainPlan& plan, const FlightGains& gains) {
+  if (gains.low_modes != nullptr) return fly_lanes<Control::grouped, T>;
+  return plan.damping_ratio > 0 ? fly_lanes<Control::damped, T> : fly_lanes<Control::springs, T>;
+}
+
+void fly_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+             const double* launch_velocity, const FlightGains& gains, double* finals,
+             double* tangents) {
+  const Index wide = lanes_of(Pack());
+  const Index count = gains.flights();
+  for (Index first = 0; first < count; first += wide) {
+    const FlightGains here = gains.part(first, std::min(wide, count - first));
+    double* out = finals + first * 2 * plan.particles;
+    double* out_tangents = tangents == nullptr ? nullptr : tangents + first * 2 * plan.particles;
+    const auto flight = tangents != nullptr   ? flight_of<Dual<Pack>>(plan, here)
+                        : here.flights() == 1 ? flight_of<Real>(plan, here)
+                                              : flight_of<Pack>(plan, here);
+    flight(plan, reference, initial, launch_velocity, here, out, out_tangents);
+  }
+}
+
+Index lanes() { return lanes_of(Pack()); }
+const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace nuno::native
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace nuno::native {
+
+HWY_EXPORT(step_scalar);
+HWY_EXPORT(fly_all);
+HWY_EXPORT(lanes);
+HWY_EXPORT(instruction_set);
+
+FlightGains FlightGains::part(Index first, Index count) const {
+  const auto at = [](Index index) { return static_cast<std::size_t>(index); };
+  FlightGains result = *this;
+  result.values = values.subspan(at(first * groups()), at(count * groups()));
+  if (!seeds.empty()) result.seeds = seeds.subspan(at(first), at(count));
+  return result;
+}
+
+void step(const ChainPlan& plan, bool first, const double* forces, double* positions,
+          double* velocities, ScalarScratch& scratch) {
+  HWY_DYNAMIC_DISPATCH(step_scalar)(plan, first, forces, positions, velocities, scratch);
+}
+
+void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
+         const double* launch_velocity, const FlightGains& gains, double* finals,
+         double* tangents) {
+  HWY_DYNAMIC_DISPATCH(fly_all)
+  (plan, reference, initial, launch_velocity, gains, finals, tangents);
+}
+
+Index lanes() { return HWY_DYNAMIC_DISPATCH(lanes)(); }
+std::string instruction_set() { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
+
+}  // namespace nuno::native
+#endif  // HWY_ONCE
