@@ -275,4 +275,37 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
   return summary;
 }
 
+RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
+                         const MakeBackend& make, const MakeBackend& model,
+                         const RefineOptions& options) {
+  constexpr double single_precision = 1e-5;
+  constexpr Index rounds = 4;
+  const auto start = std::chrono::steady_clock::now();
+  const double gain = answer.flight.gain;
+  Problem aimed = problem;
+  aimed.aim_offset = answer.aim_offset;
+  RefineSummary carried = answer;
+  carried.flight = rollout(*make(aimed), gain);
+  carried.error_before = rollout(*make(problem), gain).error.mean;
+  carried.rollouts += 2;
+  carried.converged = carried.flight.error.mean <= options.tolerance * problem.chain.length;
+  // Steps towards the target would leave the trade that an effort limit asked for.
+  if (!carried.converged && !std::isfinite(options.effort_limit)) {
+    const RefineSummary corrected =
+        refine(aimed, gain, make, model,
+               {.tolerance = std::max(options.tolerance, single_precision), .rounds = rounds});
+    carried.rollouts += corrected.rollouts;
+    carried.tangents += corrected.tangents;
+    if (corrected.flight.error.mean < carried.flight.error.mean) {
+      carried.flight = corrected.flight;
+      carried.aim_offset = corrected.aim_offset;
+      carried.converged = corrected.converged;
+    }
+    carried.reason = corrected.reason;
+  }
+  carried.seconds +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return carried;
+}
+
 }  // namespace nuno

@@ -4,7 +4,6 @@
 
 #include <nuno/box2d.h>
 #include <nuno/native.h>
-#include <nuno/rollout.h>
 
 #include <algorithm>
 #include <cassert>
@@ -129,7 +128,7 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
   return backend;
 }
 
-RefineSummary aim_off(std::string_view name, const SceneFile& file, RefineOptions options,
+RefineSummary aim_off(std::string_view name, const SceneFile& file, const RefineOptions& options,
                       const std::function<void()>& before_rollout) {
   const auto maker = [&](std::string_view engine) -> MakeBackend {
     return [&, make = backend_maker(engine, file)](const Problem& problem) {
@@ -139,29 +138,9 @@ RefineSummary aim_off(std::string_view name, const SceneFile& file, RefineOption
   };
   const MakeBackend model = maker("native");
   const double gain = following_gain(*model(file.problem));
-  RefineSummary refined = refine(file.problem, gain, model, model, options);
-  if (name == "native") return refined;
-
-  const MakeBackend make = maker(name);
-  Problem aimed = file.problem;
-  aimed.aim_offset = refined.aim_offset;
-  RefineSummary replayed = refined;
-  replayed.flight = rollout(*make(aimed), gain);
-  replayed.error_before = rollout(*make(file.problem), gain).error.mean;
-  replayed.rollouts += 2;
-  replayed.converged = replayed.flight.error.mean <= options.tolerance * file.problem.chain.length;
-  // What an effort limit leaves is native's trade; another engine's steps towards it would leave
-  // it.
-  if (replayed.converged || std::isfinite(options.effort_limit)) return replayed;
-  constexpr double single_precision = 1e-5;
-  options.tolerance = std::max(options.tolerance, single_precision);
-  options.rounds = 4;
-  RefineSummary corrected = refine(aimed, gain, make, model, options);
-  corrected.error_before = replayed.error_before;
-  corrected.rollouts += replayed.rollouts;
-  corrected.tangents += replayed.tangents;
-  corrected.seconds += replayed.seconds;
-  return corrected.flight.error.mean < replayed.flight.error.mean ? corrected : replayed;
+  const RefineSummary refined = refine(file.problem, gain, model, model, options);
+  return name == "native" ? refined
+                          : carry_over(file.problem, refined, maker(name), model, options);
 }
 
 OptimizeSummary run_optimizer(std::string_view name, const Objective& objective) {

@@ -48,9 +48,10 @@ MakeBackend backend_maker(std::string_view name, const SceneFile& file);
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
                                                double gain);
 
-/// Aims off on the native chain at its following gain, and then, on another engine, off what is
-/// left there. `before_rollout` is called before each; what it throws ends the work.
-RefineSummary aim_off(std::string_view name, const SceneFile& file, RefineOptions options = {},
+/// Aims off on the native chain at its following gain, and carries the answer over to the engine
+/// called `name`. `before_rollout` is called before each rollout; what it throws ends the work.
+RefineSummary aim_off(std::string_view name, const SceneFile& file,
+                      const RefineOptions& options = {},
                       const std::function<void()>& before_rollout = {});
 
 inline constexpr std::array<std::string_view, 2> optimizer_names = {"global", "steepest-descent"};

@@ -173,15 +173,32 @@ TEST(Refine, ImprovesThePapersControlToo) {
 }
 
 TEST(Refine, CarriesOverToTheOtherEngineAndIsCorrectedThere) {
-  Problem problem = reachable(morph_problem(4));
+  const Problem problem = reachable(morph_problem(4));
   const double length = problem.chain.length;
   const double gain = following_gain_of(problem);
-  problem.aim_offset = refine(problem, gain, on_native, on_native).aim_offset;
-  EXPECT_LT(rollout(*on_box2d(problem), gain).error.mean, 1e-2 * length);
-  const RefineSummary corrected =
-      refine(problem, gain, on_box2d, on_native, {.tolerance = 1e-5, .rounds = 4});
-  EXPECT_LT(corrected.flight.error.mean, 1e-3 * length);
-  EXPECT_LE(corrected.rollouts, 5);
+  const RefineSummary answer = refine(problem, gain, on_native, on_native);
+  Problem aimed = problem;
+  aimed.aim_offset = answer.aim_offset;
+  const double replayed = rollout(*on_box2d(aimed), gain).error.mean;
+  EXPECT_LT(replayed, 1e-2 * length);
+  const RefineSummary carried = carry_over(problem, answer, on_box2d, on_native);
+  EXPECT_LT(carried.flight.error.mean, replayed);
+  EXPECT_LT(carried.flight.error.mean, 1e-3 * length);
+  EXPECT_LE(carried.rollouts, answer.rollouts + 7);
+  EXPECT_EQ(carried.error_before, rollout(*on_box2d(problem), gain).error.mean);
+  aimed.aim_offset = carried.aim_offset;
+  EXPECT_EQ(rollout(*on_box2d(aimed), gain).final, carried.flight.final);
+}
+
+TEST(Refine, IsOnlyFlownOnTheOtherEngineUnderAnEffortLimit) {
+  const Problem problem = reachable(morph_problem(4));
+  const double gain = following_gain_of(problem);
+  const RefineOptions limited = {.effort_limit = 0.5};
+  const RefineSummary answer = refine(problem, gain, on_native, on_native, limited);
+  const RefineSummary carried = carry_over(problem, answer, on_box2d, on_native, limited);
+  EXPECT_EQ(carried.aim_offset, answer.aim_offset);
+  EXPECT_EQ(carried.rollouts, answer.rollouts + 2);
+  EXPECT_NE(carried.flight.final, answer.flight.final);
 }
 
 TEST(Refine, LeavesTheCentroidWhereItWas) {

@@ -52,4 +52,10 @@ double following_gain(const Backend& backend);
 RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options = {});
 
+/// Flies what `refine` found with `model` alone on another engine, `make`, and takes away what is
+/// left of its miss there with a few flights more. Under an effort limit it is flown and no more.
+RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
+                         const MakeBackend& make, const MakeBackend& model,
+                         const RefineOptions& options = {});
+
 }  // namespace nuno
