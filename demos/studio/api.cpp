@@ -8,13 +8,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
+#include <cstring>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -22,11 +22,11 @@
 #include <string_view>
 #include <utility>
 
-#include "../commands.h"
 #include "../comparison.h"
 #include "../engines.h"
 #include "../json_files.h"
 #include "../output.h"
+#include "../render/film.h"
 #include "../report/report.h"
 #include "../rollouts.h"
 #include "flight.h"
@@ -78,6 +78,16 @@ std::string printed(const Write& write) {
   std::string result(text, size);
   std::free(text);
   return result;
+}
+
+std::string contents(std::FILE* file) {
+  std::rewind(file);
+  std::string text;
+  std::array<char, 65536> part;
+  while (const std::size_t size = std::fread(part.data(), 1, part.size(), file)) {
+    text.append(part.data(), size);
+  }
+  return text;
 }
 
 /// The options of a request, named as the command line's are.
@@ -413,27 +423,6 @@ Answer report_answer(const std::string& body, const Options& options, const Turn
           .file_name = "report.html"};
 }
 
-/// A folder of our own that goes with this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "nuno-studio-XXXXXX").string();
-    if (!mkdtemp(name.data())) throw OutputError(name + ": cannot be written");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  std::string file(const char* name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// What `nuno render` makes of the result.
 Answer film_answer(const std::string& body, const Options& options, const Turn& turn) {
   if (const double time = parse_scene_file(body, scene_name).scene.arrival_time;
@@ -442,22 +431,25 @@ Answer film_answer(const std::string& body, const Options& options, const Turn& 
         fmt::format("{}: /arrival_time: {} is not <= {}, the longest film of the studio",
                     scene_name, time, longest_film));
   }
-  Answer result = result_answer(body, options, turn);
-  if (result.status != 200) return result;
-  const TemporaryFolder folder;
-  const std::string result_path = folder.file("result.json"), film = folder.file("film.mp4");
-  write_output(result_path, [&](std::FILE* file) {
-    std::fwrite(result.body.data(), 1, result.body.size(), file);
-  });
+  const std::string name = "film.mp4";
+  const Throw done = run(body, options, !options.has_alpha, turn, true);
+  if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
+  require_film_maker(name);
+  // A file without a name: nothing of it stays, however the program ends.
+  const File film(std::tmpfile());
+  if (!film) throw OutputError(name + ": cannot be written: " + std::strerror(errno));
   turn.check();
-  render({.results = {result_path}, .out = film, .progress = [&](double share) {
-            turn.check();
-            turn.report(share);
-          }});
-  std::ifstream file(film, std::ios::binary);
-  return {.type = "video/mp4",
-          .body = {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()},
-          .file_name = "film.mp4"};
+  const std::vector flights = {
+      figures::make_flight(done.file.scene.name, *done.backend, done.flight)};
+  write_film(flights, figures::captioned(flights, false),
+             {.name = name,
+              .progress =
+                  [&](double share) {
+                    turn.check();
+                    turn.report(share);
+                  }},
+             film.get());
+  return {.type = "video/mp4", .body = contents(film.get()), .file_name = name};
 }
 
 /// What error costs in effort. A scene whose rollouts take long gets fewer points.
