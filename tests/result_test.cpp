@@ -105,6 +105,11 @@ TEST_F(Result, ReadsTheGainBackToTheLastBit) {
   EXPECT_EQ(result["alpha"].get<double>(), 0.018123456789012347);
 }
 
+TEST_F(Result, OfMinusZeroIsOfZero) {
+  const Json result = simulated({"simulate", scene("s-curve-32"), "--alpha", "-0"});
+  EXPECT_EQ(result["alpha"].dump(), "0.0");
+}
+
 TEST_F(Result, ErrorIsTheDistanceOfFinalAndTargetToTheLastDigits) {
   const Json result = simulated({"simulate", scene("s-curve-32"), "--alpha", "0.0181"});
   double sum = 0, largest = 0;

@@ -33,7 +33,7 @@ double number(const std::string& name, const std::string& text) {
     throw InputError(fmt::format("{}: {} is not a finite number", name, quoted(text)));
   }
   if (!(value >= 0)) throw InputError(fmt::format("{}: {} is not >= 0", name, text));
-  return value;
+  return value + 0.0;  // -0 is 0
 }
 
 template <typename Words>
