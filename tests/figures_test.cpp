@@ -19,10 +19,6 @@
 namespace nuno {
 namespace {
 
-bool is_installed(const std::string& program) {
-  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
-}
-
 class Pictures : public Program {
  protected:
   /// Runs a shell's command. The words are our own; no shell meets a stranger's text here.

@@ -162,6 +162,25 @@ TEST_F(Studio, ControlCEndsItAtOnce) {
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
 }
 
+TEST_F(Studio, ControlCLeavesNothingOfAFilm) {
+  if (!is_installed("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
+  Json scene = Json::parse(small_scene);
+  scene["arrival_time"] = 3;  // 180 pictures: seconds
+  const Connection busy(port_);
+  busy.send(post_text("/api/film?alpha=0.1&page=a", scene.dump()));
+  const auto patience = Clock::now() + 60s;
+  while (json_of(get("/api/progress?page=a")).value("progress", 0.0) == 0) {
+    ASSERT_LT(Clock::now(), patience);
+    std::this_thread::sleep_for(1ms);
+  }
+  const auto start = Clock::now();
+  ::kill(process_, SIGINT);
+  ::waitpid(process_, nullptr, 0);
+  process_ = 0;
+  EXPECT_LT(Clock::now() - start, 1s);
+  EXPECT_TRUE(fs::is_empty(in_folder("temporary")));
+}
+
 class SecondStudio : public Studio {
  protected:
   void TearDown() override {
