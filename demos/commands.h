@@ -3,7 +3,6 @@
 #include <nuno/gains.h>
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -72,9 +71,6 @@ struct RenderOptions {
   bool still = false;                ///< an SVG that does not move
   bool plain = false;                ///< shapes alone: no axes, no text
   double speed = 1;                  ///< of a film over that of the flight, > 0
-  double frames_per_second = 60;     ///< of a film [1/s]
-  /// Is told how much of a film is made, 0 … 1; what it throws ends the work.
-  std::function<void(double share)> progress = {};
 };
 
 // The commands. They throw InputError and OutputError, and say themselves why a rollout diverged.

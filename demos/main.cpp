@@ -31,7 +31,7 @@ double number(const std::string& option, const std::string& text) {
   if (error != std::errc() || rest != end || !std::isfinite(value)) {
     throw CLI::ValidationError(option, fmt::format("\"{}\" is not a finite number", text));
   }
-  return value;
+  return value + 0.0;  // -0 is 0
 }
 
 std::string word(const std::string& option, const std::string& text,
@@ -147,6 +147,9 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
     return what.substr(0, what.find(' ')) + ": is missing; it is required";
   }
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
+    if (what.ends_with("flag override")) {  // "refine was given …", without its dashes
+      return fmt::format("--{}: takes no value", what.substr(0, what.find(' ')));
+    }
     return what.substr(0, what.find(':')) + ": takes exactly one value";
   }
   return what;
@@ -155,6 +158,7 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
 ExitStatus run(int argc, char** argv) {
   CLI::App app("Throws a cloth so that it arrives at a drawn target: in place, in shape, on time.",
                "nuno");
+  app.option_defaults()->disable_flag_override();  // a flag takes no value
   app.set_version_flag("--version", "nuno " NUNO_VERSION, "Print the version and exit");
   app.set_help_flag("--help,-h", "Print this help and exit");
   app.footer(

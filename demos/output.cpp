@@ -6,7 +6,6 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <system_error>
 
 #include <unistd.h>
@@ -15,11 +14,6 @@ namespace nuno {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, Close>;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
   throw OutputError(

@@ -2,10 +2,17 @@
 
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 
 namespace nuno {
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+/// An open file, closed with this object.
+using File = std::unique_ptr<std::FILE, CloseFile>;
 
 /// An output cannot be written; the message names it and says why.
 class OutputError : public std::runtime_error {

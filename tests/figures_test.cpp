@@ -8,67 +8,37 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
 
 #include <sys/wait.h>
-#include <unistd.h>
 
+#include "program.h"
+
+namespace nuno {
 namespace {
 
-namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
-std::string read_text(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-struct Outcome {
-  int status = -1;
-  std::string out, err;
-};
-
-bool is_installed(const std::string& program) {
-  return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
-}
-
-/// A folder of its own for every test.
-class Pictures : public testing::Test {
+class Pictures : public Program {
  protected:
-  Pictures() {
-    std::string pattern = (fs::temp_directory_path() / "nuno-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~Pictures() override { fs::remove_all(folder_); }
-
-  fs::path in_folder(const std::string& name) const { return folder_ / name; }
-
-  /// The words are our own; no shell meets a stranger's text here.
+  /// Runs a shell's command. The words are our own; no shell meets a stranger's text here.
   Outcome run(const std::string& command) const {
-    const fs::path out = folder_ / "stdout", err = folder_ / "stderr";
+    const fs::path out = in_folder("stdout"), err = in_folder("stderr");
     const int status =
         std::system((command + " >" + out.string() + " 2>" + err.string() + " </dev/null").c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
   }
-  Outcome nuno(const std::string& arguments) const { return run(NUNO_PROGRAM " " + arguments); }
 
   /// A small throw of half a second.
   std::string result(const std::string& backend = "native") const {
     const fs::path scene = in_folder("throw <&>.json");
-    std::ofstream(scene) << R"({"nuno_scene": 1, "particles": 8, "arrival_time": 0.5,
-      "initial": [[0, 1], [1, 1]], "target": [[2, 1], [2.5, 1.3], [3, 1]]})";
-    const std::string file = in_folder(backend + ".json").string();
-    const Outcome made = nuno("simulate '" + scene.string() + "' --alpha 0.05 --backend " +
-                              backend + " --out " + file);
+    write_text(scene, right_scene().dump());
+    const std::string file = in_folder(backend + ".json");
+    const Outcome made =
+        nuno({"simulate", scene, "--alpha", "0.05", "--backend", backend, "--out", file});
     EXPECT_EQ(made.status, 0) << made.err;
     return file;
   }
-
- private:
-  fs::path folder_;
 };
 
 /// Why a text is no XML that an SVG reader takes; empty if it is. Knows what our files use: tags,
@@ -143,7 +113,7 @@ double distance(const std::array<double, 2>& a, const std::array<double, 2>& b) 
 }
 
 TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
-  const Outcome made = nuno("figures --out " + in_folder("figures").string());
+  const Outcome made = nuno({"figures", "--out", in_folder("figures")});
   if (is_installed("rsvg-convert")) {
     EXPECT_EQ(made.status, 0) << made.err;
   }
@@ -170,10 +140,10 @@ TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
   }
   // The best point is the one that a search of its own finds.
   const fs::path found = in_folder("best.json");
-  ASSERT_EQ(nuno("optimize " NUNO_SCENES "/s-curve-32.json --out " + found.string()).status, 0);
+  ASSERT_EQ(nuno({"optimize", scene("s-curve-32"), "--out", found}).status, 0);
   char best[64];
   std::snprintf(best, sizeof best, "best, both engines: α = %.3g N/m",
-                Json::parse(read_text(found))["alpha"].get<double>());
+                read_json(found)["alpha"].get<double>());
   EXPECT_NE(figure(5).find(best), std::string::npos) << best;
   // It is where the curve is lowest, and ringed.
   const std::vector<Places> curves = polylines(figure(5), "a thick");
@@ -211,16 +181,21 @@ TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
 }
 
 TEST_F(Pictures, AStillAndAMovingSvgOfSeveralResultsAreWellFormed) {
-  const std::string results = result("native") + " " + result("box2d");
-  for (const std::string more : {"", " --still", " --plain", " --plain --still", " --speed 0.25"}) {
+  const std::string native = result("native"), box2d = result("box2d");
+  using Words = std::vector<std::string>;
+  for (const Words& more :
+       {Words{}, {"--still"}, {"--plain"}, {"--plain", "--still"}, {"--speed", "0.25"}}) {
     const fs::path file = in_folder("out.svg");
-    const Outcome made = nuno("render " + results + " --out " + file.string() + more);
+    Words words = {"render", native, box2d, "--out", file};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome made = nuno(words);
     EXPECT_EQ(made.status, 0) << made.err;
     const std::string svg = read_text(file);
-    EXPECT_TRUE(is_svg(svg)) << more << ": " << xml_mistake(svg);
+    EXPECT_TRUE(is_svg(svg)) << testing::PrintToString(more) << ": " << xml_mistake(svg);
     EXPECT_EQ(svg.find("nan"), std::string::npos);
-    EXPECT_EQ(svg.find("<animate") != std::string::npos, more.find("still") == std::string::npos);
-    if (more.find("plain") == std::string::npos) {
+    const auto has = [&](const char* word) { return std::ranges::find(more, word) != more.end(); };
+    EXPECT_NE(svg.find("<animate") != std::string::npos, has("--still"));
+    if (!has("--plain")) {
       EXPECT_NE(svg.find("throw &lt;&amp;&gt;"), std::string::npos);
       EXPECT_NE(svg.find("Box2D"), std::string::npos);
     }
@@ -236,7 +211,7 @@ TEST_F(Pictures, AFilmHasAllItsFramesAndLastsAsLongAsTheFlightAndARest) {
   for (const auto& [extension, rate] :
        std::vector<std::pair<std::string, int>>{{"mp4", 60}, {"gif", 25}, {"webm", 60}}) {
     const std::string film = in_folder("film." + extension).string();
-    const Outcome made = nuno("render " + file + " --out " + film);
+    const Outcome made = nuno({"render", file, "--out", film});
     ASSERT_EQ(made.status, 0) << made.err;
     const Outcome probe =
         run("ffprobe -v error -select_streams v -count_frames -show_entries "
@@ -273,7 +248,7 @@ TEST_F(Pictures, WithoutItsProgramsAFilmSaysWhatToInstall) {
 }
 
 TEST_F(Pictures, ABadResultIsRefusedInOneLineThatSaysWhereAndWhy) {
-  const Json right = Json::parse(read_text(result()));
+  const Json right = read_json(result());
   struct Bad {
     std::string pointer;
     Json value;
@@ -299,9 +274,9 @@ TEST_F(Pictures, ABadResultIsRefusedInOneLineThatSaysWhereAndWhy) {
        }) {
     Json wrong = right;
     wrong[Json::json_pointer(bad.pointer)] = bad.value;
-    const std::string file = in_folder("bad.json").string();
-    std::ofstream(file) << wrong.dump();
-    const Outcome made = nuno("render " + file + " --out " + in_folder("bad.svg").string());
+    const std::string file = in_folder("bad.json");
+    write_text(file, wrong.dump());
+    const Outcome made = nuno({"render", file, "--out", in_folder("bad.svg")});
     EXPECT_EQ(made.status, 2) << bad.message;
     EXPECT_TRUE(made.err.starts_with(file + ": " + bad.message)) << made.err;
     EXPECT_EQ(std::ranges::count(made.err, '\n'), 1) << made.err;
@@ -309,23 +284,23 @@ TEST_F(Pictures, ABadResultIsRefusedInOneLineThatSaysWhereAndWhy) {
   for (const std::string text : {"", "{", "[]",
                                  "\x7f"
                                  "ELF"}) {
-    const std::string file = in_folder("bad.json").string();
-    std::ofstream(file) << text;
-    EXPECT_EQ(nuno("render " + file + " --out " + in_folder("bad.svg").string()).status, 2) << text;
+    const std::string file = in_folder("bad.json");
+    write_text(file, text);
+    EXPECT_EQ(nuno({"render", file, "--out", in_folder("bad.svg")}).status, 2) << text;
   }
   EXPECT_FALSE(fs::exists(in_folder("bad.svg")));
 }
 
 // Where numbers lie closer together than ticks, an axis has no next tick.
 TEST_F(Pictures, AResultFarFromTheOriginIsDrawnOrRefusedAtOnce) {
-  Json far = Json::parse(read_text(result()));
+  Json far = read_json(result());
   const auto rendered_at = [&](double extent) {
     Json line = Json::array();
     for (int i = 0; i < 8; ++i) line.push_back({1e9, 1 + extent * i / 7});
     far["target"] = far["final"] = line;
     for (Json& positions : far["frames"]["positions"]) positions = line;
-    const std::string file = in_folder("far.json").string();
-    std::ofstream(file) << far.dump();
+    const std::string file = in_folder("far.json");
+    write_text(file, far.dump());
     return run("sh -c 'ulimit -v 4000000; exec timeout 20 " NUNO_PROGRAM " render " + file +
                " --out " + in_folder("far.svg").string() + "'");
   };
@@ -339,9 +314,8 @@ TEST_F(Pictures, AResultFarFromTheOriginIsDrawnOrRefusedAtOnce) {
 
 TEST_F(Pictures, TheReadmesPictureIsWhatItsCommandMakes) {
   const fs::path fresh = in_folder("nuno.svg");
-  const std::string scenes = NUNO_SCENES "/nuno/";
-  const Outcome made = nuno("render " + scenes + "n1.json " + scenes + "n2.json " + scenes +
-                            "o.json " + scenes + "u.json --plain --out " + fresh.string());
+  const Outcome made = nuno({"render", scene("nuno/n1"), scene("nuno/n2"), scene("nuno/o"),
+                             scene("nuno/u"), "--plain", "--out", fresh});
   ASSERT_EQ(made.status, 0) << made.err;
   const std::string svg = read_text(fresh);
   EXPECT_TRUE(is_svg(svg)) << xml_mistake(svg);
@@ -354,3 +328,4 @@ TEST_F(Pictures, TheReadmesPictureIsWhatItsCommandMakes) {
 }
 
 }  // namespace
+}  // namespace nuno

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 #include <mutex>
 #include <sstream>
 #include <utility>
@@ -20,11 +19,6 @@
 
 namespace nuno {
 namespace {
-
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, Close>;
 
 bool is_on_path(const std::string& program) {
   const char* const path = std::getenv("PATH");

@@ -241,6 +241,26 @@ double last_arrival(const std::vector<Flight>& flights) {
   return last;
 }
 
+FlightFigure captioned(const std::vector<Flight>& flights, bool plain) {
+  FlightFigure figure;
+  figure.plain = plain;
+  if (plain) figure.ghosts = 3;
+  const Flight& first = flights.front();
+  if (flights.size() == 1) {
+    figure.title = first.scene;
+    figure.subtitle =
+        fmt::format("{}, {} particles, α = {} N/m: mean error {:.3g} % of the cloth’s length",
+                    engine_name(first.backend), first.target.cols(), shown(first.gain),
+                    100 * first.error / first.cloth_length);
+  } else {
+    const bool one_scene = std::ranges::all_of(
+        flights, [&](const Flight& flight) { return flight.scene == first.scene; });
+    figure.title = one_scene ? first.scene : fmt::format("{} throws", flights.size());
+    figure.subtitle = "target: the broad line; errors in % of the cloth’s length";
+  }
+  return figure;
+}
+
 Drawing draw_flights(const std::vector<Flight>& flights, const FlightFigure& options) {
   const Extent extent = extent_of(flights);
   Drawing heading({0, 0}, "");

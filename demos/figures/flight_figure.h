@@ -40,6 +40,9 @@ struct FlightFigure {
   bool plain = false;  ///< shapes alone: no axes, no text
 };
 
+/// The figure of these flights with a title, and a subtitle that tells their errors.
+FlightFigure captioned(const std::vector<Flight>& flights, bool plain);
+
 /// Flights over one another: initial shape, target, ghosts, centroid's path and final shape, and
 /// the arrival once more, enlarged.
 Drawing draw_flights(const std::vector<Flight>& flights, const FlightFigure& options);

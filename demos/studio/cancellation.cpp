@@ -11,11 +11,9 @@ namespace {
 /// Gains of one portion: a few tenths of a second of work; whole SIMD packs on native, and a gain
 /// for every core on an engine that flies them one by one.
 std::size_t gains_of_portion(const Backend& backend) {
-  const double work = static_cast<double>(backend.steps()) *
-                      static_cast<double>(backend.problem().chain.particles());
   const bool is_native = backend.name() == "native";
   const std::size_t least = is_native ? 16 : std::max(1u, std::thread::hardware_concurrency());
-  return std::max(least, static_cast<std::size_t>((is_native ? 2e7 : 1e6) / work));
+  return std::max(least, static_cast<std::size_t>((is_native ? 2e7 : 1e6) / work_of(backend)));
 }
 
 }  // namespace
@@ -37,10 +35,17 @@ void Turns::end(const std::string& page, const Turn& turn) {
   if (running != running_.end() && running->second == turn.state_) running_.erase(running);
 }
 
-double Turns::progress(const std::string& page) {
+Turn Turns::running(const std::string& page) {
+  Turn turn;
   const std::scoped_lock lock(mutex_);
   const auto running = running_.find(page);
-  return running == running_.end() ? 0 : running->second->progress.load();
+  if (running != running_.end()) turn.state_ = running->second;
+  return turn;
+}
+
+double work_of(const Backend& backend) {
+  return static_cast<double>(backend.steps()) *
+         static_cast<double>(backend.problem().chain.particles());
 }
 
 Objective cancellable(const Backend& backend, const Turn& turn) {

@@ -25,6 +25,7 @@ class Turn {
   void report(double share) const {
     if (state_) state_->progress = share;
   }
+  double progress() const { return state_ ? state_->progress.load() : 0; }
 
  private:
   friend class Turns;
@@ -41,13 +42,16 @@ class Turns {
   /// Ends the turn that `page` has and begins a new one; an empty `page` never ends another's.
   Turn begin(const std::string& page);
   void end(const std::string& page, const Turn& turn);
-  /// Of the turn that `page` has; 0 without one.
-  double progress(const std::string& page);
+  /// The turn that `page` has; without one, a turn that nobody ends.
+  Turn running(const std::string& page);
 
  private:
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Turn::State>> running_;
 };
+
+/// What one rollout takes, in particle-steps.
+double work_of(const Backend& backend);
 
 /// The objective of `backend`, in portions of a fraction of a second; between them it throws
 /// Cancelled if the turn is over. The errors are the same to the bit.

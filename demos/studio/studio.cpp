@@ -133,13 +133,23 @@ void send(httplib::Response& response, Answer answer) {
   }
 }
 
-Answer get(studio::Api& api, const httplib::Request& request) {
+std::optional<PageFile> page_file(std::string_view path) {
   for (const PageFile& file : page_files()) {
-    if (request.path == file.path) {
-      return {.type = std::string(file.type), .body = std::string(file.text)};
-    }
+    if (file.path == path) return file;
+  }
+  return std::nullopt;
+}
+
+Answer get(studio::Api& api, const httplib::Request& request) {
+  if (const auto file = page_file(request.path)) {
+    return {.type = std::string(file->type), .body = std::string(file->text)};
   }
   return api.get(request.path, request.params);
+}
+
+Answer post(studio::Api& api, const httplib::Request& request, std::string body) {
+  if (page_file(request.path)) return refusal(405, request.path + ": takes GET");
+  return api.post(request.path, request.params, std::move(body));
 }
 
 void set_routes(httplib::Server& server, studio::Api& api, int port) {
@@ -206,7 +216,7 @@ void set_routes(httplib::Server& server, studio::Api& api, int port) {
     } else if (!lower(request.get_header_value("Content-Type")).starts_with("application/json")) {
       send(response, studio::refusal(415, "the Content-Type is not application/json"));
     } else {
-      send(response, api.post(request.path, request.params, body));
+      send(response, post(api, request, std::move(body)));
     }
   };
   server.Post(".*", with_body);
