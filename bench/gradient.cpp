@@ -32,7 +32,7 @@ void gradient(Report& report, const Options& options) {
     const std::vector<double> beside = native->errors(around);
     const double difference = (beside[1] - beside[0]) / (2 * delta);
     const double unit = problem.chain.length / gains[i];
-    slope_off = std::max(slope_off, std::abs(samples[i].slope - difference) / unit);
+    slope_off = std::max(slope_off, std::abs(samples[i].slopes[0].error - difference) / unit);
     value_off = std::max(value_off, std::abs(samples[i].error - errors[i]) / problem.chain.length);
   }
   report.check(value_off < 1e-9,
@@ -46,7 +46,7 @@ void gradient(Report& report, const Options& options) {
   };
   const auto both = [&] {
     double sum = 0;
-    for (const ErrorSample& sample : native->error_samples(gains)) sum += sample.slope;
+    for (const ErrorSample& sample : native->error_samples(gains)) sum += sample.slopes[0].error;
     return sum;
   };
   const std::array<Run, 2> runs = {Run{both}, Run{value}};

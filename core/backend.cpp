@@ -7,7 +7,7 @@
 
 namespace nuno {
 
-std::vector<double> Backend::errors(std::span<const double> gains, const Points& initial) const {
+std::vector<double> Backend::errors(std::span<const Gains> gains, const Points& initial) const {
   std::vector<double> result(gains.size());
   parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
     const auto at = static_cast<std::size_t>(i);
@@ -16,21 +16,7 @@ std::vector<double> Backend::errors(std::span<const double> gains, const Points&
   return result;
 }
 
-std::vector<double> Backend::grouped_errors(std::span<const Gains> gains) const {
-  std::vector<double> result(gains.size());
-  parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
-    const auto at = static_cast<std::size_t>(i);
-    result[at] = rollout(*this, gains[at]).error.mean;
-  });
-  return result;
-}
-
-std::vector<ErrorSample> Backend::error_samples(std::span<const double>) const {
-  assert(!"this engine has no slopes");
-  return {};
-}
-
-std::vector<ErrorGradient> Backend::error_gradients(std::span<const Gains>) const {
+std::vector<ErrorSample> Backend::error_samples(std::span<const Gains>) const {
   assert(!"this engine has no slopes");
   return {};
 }
@@ -38,6 +24,14 @@ std::vector<ErrorGradient> Backend::error_gradients(std::span<const Gains>) cons
 FlightTangent Backend::flight_tangent(double, const AimDirections&) const {
   assert(!"this engine has no tangent");
   return {};
+}
+
+std::vector<double> Backend::errors(std::span<const double> gains) const {
+  return errors(std::vector<Gains>(gains.begin(), gains.end()));
+}
+
+std::vector<ErrorSample> Backend::error_samples(std::span<const double> gains) const {
+  return error_samples(std::vector<Gains>(gains.begin(), gains.end()));
 }
 
 }  // namespace nuno

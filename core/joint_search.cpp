@@ -55,13 +55,13 @@ class LogObjective {
 
   Point at(const Vector& x) {
     Point point{x, 0, Vector(x.size())};
-    if (objective_.gradients) {
+    if (objective_.samples) {
       evaluations_ += x.size();
       const Gains here = gains(x);
-      const ErrorGradient found = objective_.gradients({&here, 1}).front();
+      const ErrorSample found = objective_.samples({&here, 1}).front();
       point.error = found.error;
       for (Index k = 0; k < x.size(); ++k) {
-        point.slope[k] = std::exp(x[k]) * found.slopes[static_cast<std::size_t>(k)];
+        point.slope[k] = std::exp(x[k]) * found.slopes[static_cast<std::size_t>(k)].error;
       }
       return point;
     }
@@ -212,12 +212,10 @@ std::vector<Vector> starts_from(LogObjective& objective, const JointSearchOption
 
 JointObjective joint_objective(const Backend& backend) {
   JointObjective result;
-  result.errors = [&backend](std::span<const Gains> gains) {
-    return backend.grouped_errors(gains);
-  };
+  result.errors = [&backend](std::span<const Gains> gains) { return backend.errors(gains); };
   if (backend.has_slopes()) {
-    result.gradients = [&backend](std::span<const Gains> gains) {
-      return backend.error_gradients(gains);
+    result.samples = [&backend](std::span<const Gains> gains) {
+      return backend.error_samples(gains);
     };
   }
   const Objective range = objective(backend);

@@ -202,8 +202,9 @@ struct Bracket {
     // d/du = 2u·d/dα
     const double leaving = 2 * left->u * s * t * t * width();
     const double arriving = -2 * right->u * s * s * t * width();
-    return (from * left->sample.miss + to * right->sample.miss + leaving * left->sample.miss_slope +
-            arriving * right->sample.miss_slope)
+    return (from * left->sample.miss + to * right->sample.miss +
+            leaving * left->sample.slopes.front().miss +
+            arriving * right->sample.slopes.front().miss)
         .colwise()
         .norm()
         .mean();

@@ -16,9 +16,10 @@ Objective robust_objective(const Backend& backend, const RobustOptions& options)
   Objective result = objective(backend);
   result.samples = nullptr;
   result.errors = [&backend, starts = std::move(starts)](std::span<const double> gains) {
+    const std::vector<Gains> all(gains.begin(), gains.end());
     std::vector<double> mean(gains.size(), 0.0);
     for (const Points& start : starts) {
-      const std::vector<double> errors = backend.errors(gains, start);
+      const std::vector<double> errors = backend.errors(all, start);
       for (std::size_t i = 0; i < gains.size(); ++i) {
         mean[i] += errors[i] / static_cast<double>(starts.size());
       }

@@ -68,7 +68,7 @@ Objective with_progress(Objective objective, const std::string& label) {
 JointObjective with_progress(JointObjective objective, const std::string& label) {
   const auto count = std::make_shared<std::size_t>(0);
   count_rollouts(objective.errors, count, label);
-  count_rollouts(objective.gradients, count, label);
+  count_rollouts(objective.samples, count, label);
   return objective;
 }
 

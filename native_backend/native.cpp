@@ -110,39 +110,28 @@ class NativeBackend final : public Backend {
   // A millionth of it is the rounding of a flight (1e-14).
   double smallest_disturbance() const override { return 1e-8; }
 
-  using Backend::errors;
-  std::vector<double> errors(std::span<const double> gains, const Points& initial) const override {
-    std::vector<double> result;
-    for (const ErrorSample& sample : fly_over({gains}, initial, false)) {
-      result.push_back(sample.error);
-    }
-    return result;
-  }
-
-  std::vector<double> grouped_errors(std::span<const Gains> gains) const override {
+  std::vector<double> errors(std::span<const Gains> gains, const Points& initial) const override {
     const GroupedFlights flights(problem(), gains, 1);
     std::vector<double> result;
-    for (const ErrorSample& sample : fly_over(flights.gains(), problem().chain.initial, false)) {
-      result.push_back(sample.error);
+    for (const Arrival& arrival : fly_over(flights.gains(), initial, false)) {
+      result.push_back(arrival.error);
     }
     return result;
   }
 
   bool has_slopes() const override { return true; }
-  std::vector<ErrorSample> error_samples(std::span<const double> gains) const override {
-    return fly_over({gains}, problem().chain.initial, true);
-  }
 
-  std::vector<ErrorGradient> error_gradients(std::span<const Gains> gains) const override {
+  std::vector<ErrorSample> error_samples(std::span<const Gains> gains) const override {
     if (gains.empty()) return {};
     const auto groups = static_cast<std::size_t>(gains.front().count());
     const GroupedFlights flights(problem(), gains, gains.front().count());
-    const std::vector<ErrorSample> samples =
-        fly_over(flights.gains(), problem().chain.initial, true);
-    std::vector<ErrorGradient> result(gains.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      result[i / groups].error = samples[i].error;
-      result[i / groups].slopes.push_back(samples[i].slope);
+    std::vector<Arrival> arrivals = fly_over(flights.gains(), problem().chain.initial, true);
+    std::vector<ErrorSample> result(gains.size());
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+      ErrorSample& sample = result[i / groups];
+      sample.error = arrivals[i].error;
+      sample.miss = std::move(arrivals[i].miss);
+      sample.slopes.push_back(std::move(arrivals[i].slope));
     }
     return result;
   }
@@ -253,23 +242,30 @@ class NativeBackend final : public Backend {
     return starts;
   }
 
-  std::vector<ErrorSample> fly_over(const FlightGains& gains, const Points& initial,
-                                    bool with_slopes) const {
+  /// How a flight of the kernel arrives, and the derivatives with respect to one of its gains.
+  struct Arrival {
+    double error = 0;
+    Points miss;
+    ErrorSample::Slope slope;
+  };
+
+  std::vector<Arrival> fly_over(const FlightGains& gains, const Points& initial,
+                                bool with_slopes) const {
     const Points velocities = launch(*this);
     const Index count = gains.flights();
-    std::vector<ErrorSample> samples(static_cast<std::size_t>(count));
+    std::vector<Arrival> arrivals(static_cast<std::size_t>(count));
     const Index batch = lanes();
     parallel_for((count + batch - 1) / batch, [&](Index b) {
       const Index first = b * batch;
       const FlightGains here = gains.part(first, std::min(batch, count - first));
       fly_batch(here, initial, velocities, with_slopes,
-                std::span(samples).subspan(static_cast<std::size_t>(first)));
+                std::span(arrivals).subspan(static_cast<std::size_t>(first)));
     });
-    return samples;
+    return arrivals;
   }
 
   void fly_batch(const FlightGains& gains, const Points& initial, const Points& velocities,
-                 bool with_slopes, std::span<ErrorSample> samples) const {
+                 bool with_slopes, std::span<Arrival> arrivals) const {
     const Points& target = problem().target;
     const Index size = target.size();
     const Index count = gains.flights();
@@ -279,21 +275,22 @@ class NativeBackend final : public Backend {
         finals.data(), with_slopes ? tangents.data() : nullptr);
     for (Index lane = 0; lane < count; ++lane) {
       const Eigen::Map<const Points> final(finals.data() + lane * size, 2, target.cols());
-      ErrorSample& sample = samples[static_cast<std::size_t>(lane)];
+      Arrival& arrival = arrivals[static_cast<std::size_t>(lane)];
       if (is_torn(problem().chain, final)) {
-        sample.error = std::numeric_limits<double>::infinity();
+        arrival.error = std::numeric_limits<double>::infinity();
         continue;
       }
-      sample.error = arrival_error(final, target).mean;
+      arrival.error = arrival_error(final, target).mean;
       if (!with_slopes) continue;
-      sample.miss = final - target;
-      sample.miss_slope = Eigen::Map<const Points>(tangents.data() + lane * size, 2, target.cols());
+      arrival.miss = final - target;
+      arrival.slope.miss =
+          Eigen::Map<const Points>(tangents.data() + lane * size, 2, target.cols());
       double slope = 0;
       for (Index i = 0; i < target.cols(); ++i) {
-        const double distance = sample.miss.col(i).norm();
-        if (distance > 0) slope += sample.miss.col(i).dot(sample.miss_slope.col(i)) / distance;
+        const double distance = arrival.miss.col(i).norm();
+        if (distance > 0) slope += arrival.miss.col(i).dot(arrival.slope.miss.col(i)) / distance;
       }
-      sample.slope = slope / static_cast<double>(target.cols());
+      arrival.slope.error = slope / static_cast<double>(target.cols());
     }
   }
 

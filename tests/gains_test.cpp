@@ -164,7 +164,7 @@ TEST(GroupedFlight, HasTheSameBitsInTheBatchAndStepByStep) {
     for (const Gains& gains : unlike_gains(problem)) {
       Gains other = gains;
       other.rest *= 1.5;
-      const std::vector<double> errors = backend->grouped_errors(std::vector<Gains>{gains, other});
+      const std::vector<double> errors = backend->errors(std::vector<Gains>{gains, other});
       EXPECT_EQ(errors[0], rollout(*backend, gains).error.mean);
       EXPECT_EQ(errors[1], rollout(*backend, other).error.mean);
     }
@@ -175,12 +175,13 @@ TEST(GroupedFlight, OfOneGroupIsTheFlightOfOneGain) {
   const auto backend = native::make_backend(morph_problem());
   const std::vector<double> alphas = {0.1, 0.7};
   const std::vector<Gains> gains(alphas.begin(), alphas.end());
-  EXPECT_EQ(backend->grouped_errors(gains), backend->errors(alphas));
-  const std::vector<ErrorSample> samples = backend->error_samples(alphas);
-  const std::vector<ErrorGradient> gradients = backend->error_gradients(gains);
+  EXPECT_EQ(backend->errors(gains), backend->errors(alphas));
+  const std::vector<ErrorSample> of_one = backend->error_samples(alphas);
+  const std::vector<ErrorSample> of_groups = backend->error_samples(gains);
   for (std::size_t i = 0; i < alphas.size(); ++i) {
-    EXPECT_EQ(gradients[i].error, samples[i].error);
-    EXPECT_EQ(gradients[i].slopes, std::vector<double>{samples[i].slope});
+    EXPECT_EQ(of_groups[i].error, of_one[i].error);
+    ASSERT_EQ(of_groups[i].slopes.size(), 1u);
+    EXPECT_EQ(of_groups[i].slopes[0].error, of_one[i].slopes[0].error);
   }
 }
 
@@ -199,7 +200,7 @@ TEST(GroupedFlight, KnowsTheSlopeByEveryGain) {
   for (const Problem& problem : {hold_problem(), morph_problem()}) {
     const auto backend = native::make_backend(problem);
     for (const Gains& gains : unlike_gains(problem)) {
-      const ErrorGradient found = backend->error_gradients({&gains, 1}).front();
+      const ErrorSample found = backend->error_samples({&gains, 1}).front();
       const std::vector<double> groups = gains.groups();
       ASSERT_EQ(found.slopes.size(), groups.size());
       for (std::size_t k = 0; k < groups.size(); ++k) {
@@ -210,11 +211,11 @@ TEST(GroupedFlight, KnowsTheSlopeByEveryGain) {
           moved[k] += steps * d;
           around.push_back(by_group(moved));
         }
-        const std::vector<double> e = backend->grouped_errors(around);
+        const std::vector<double> e = backend->errors(around);
         const double difference = (e[0] - 8 * e[1] + 8 * e[2] - e[3]) / (12 * d);
         // Fourth-order differences over 3e-4: at 1e-3 the curviest is 2e-5 off, at 1e-4 rounding is
         // 1e-6 of the slightest.
-        EXPECT_NEAR(found.slopes[k] / difference, 1, 1e-6) << k << " of " << groups.size();
+        EXPECT_NEAR(found.slopes[k].error / difference, 1, 1e-6) << k << " of " << groups.size();
       }
     }
   }
@@ -309,7 +310,7 @@ TEST(JointSearch, DoesWithoutGradients) {
   const auto backend = native::make_backend(hold_problem());
   const OptimizeSummary one = global_search(objective(*backend));
   JointObjective with = joint_objective(*backend), without = with;
-  without.gradients = nullptr;
+  without.samples = nullptr;
   const double exact = joint_search(with, {one.gain, one.error}).stages.back().error;
   const double differences = joint_search(without, {one.gain, one.error}).stages.back().error;
   EXPECT_LE(differences, one.error);

@@ -270,7 +270,8 @@ TEST(NativeBatch, KnowsTheSlopeOfTheError) {
         std::vector<double>{gains[i] - 2 * d, gains[i] - d, gains[i] + d, gains[i] + 2 * d});
     const double difference = (around[0] - 8 * around[1] + 8 * around[2] - around[3]) / (12 * d);
     // Fourth-order differences: rounding 1e-14/d = 1e-7 of slopes of order 1.
-    EXPECT_NEAR(samples[i].slope, difference, 1e-6 * std::abs(difference) + 1e-7) << gains[i];
+    EXPECT_NEAR(samples[i].slopes[0].error, difference, 1e-6 * std::abs(difference) + 1e-7)
+        << gains[i];
     EXPECT_EQ(samples[i].error, backend->errors({&gains[i], 1}).front());
   }
 }

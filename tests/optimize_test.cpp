@@ -125,8 +125,9 @@ TEST(GlobalSearch, StartsWarmInTheValleyOfTheLastOptimum) {
     std::vector<ErrorSample> samples;
     for (const double gain : gains) {
       // One particle that arrives E(α) beside its target.
-      samples.push_back({bowl(gain), 2 * (gain - 3), Eigen::Vector2d(bowl(gain), 0),
-                         Eigen::Vector2d(2 * (gain - 3), 0)});
+      samples.push_back({bowl(gain),
+                         Eigen::Vector2d(bowl(gain), 0),
+                         {{2 * (gain - 3), Eigen::Vector2d(2 * (gain - 3), 0)}}});
     }
     return samples;
   };
@@ -151,7 +152,7 @@ Objective arriving(const std::function<Points(double)>& miss,
       ErrorSample sample;
       sample.miss = miss(u);
       sample.error = mean(sample.miss);
-      sample.miss_slope = miss_over_u(u) / (2 * std::max(u, 1e-9));
+      sample.slopes.emplace_back().miss = miss_over_u(u) / (2 * std::max(u, 1e-9));
       samples.push_back(sample);
     }
     return samples;

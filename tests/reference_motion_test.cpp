@@ -148,8 +148,8 @@ TEST(MorphControl, KnowsItsSlope) {
     const std::vector<double> around =
         backend->errors(std::vector<double>{gain - 2 * d, gain - d, gain + d, gain + 2 * d});
     const double difference = (around[0] - 8 * around[1] + 8 * around[2] - around[3]) / (12 * d);
-    EXPECT_NEAR(backend->error_samples({&gain, 1}).front().slope, difference,
-                1e-6 * std::abs(difference));
+    const ErrorSample sample = backend->error_samples({&gain, 1}).front();
+    EXPECT_NEAR(sample.slopes[0].error, difference, 1e-6 * std::abs(difference));
   }
 }
 

@@ -37,18 +37,16 @@ class Simulation {
   virtual std::string_view failure() const { return {}; }
 };
 
-/// How one gain arrives, and the derivatives with respect to it.
+/// How a flight arrives under some gains, and the derivatives with respect to each of them.
 struct ErrorSample {
-  double error = 0;  ///< E(α) [m]; +∞ where the rollout diverged
-  double slope = 0;  ///< dE/dα [m²/N]; damped and at α = 0, where it is infinite, of the springs
-  Points miss;       ///< final positions less the target [2 × N], m; empty where it diverged
-  Points miss_slope;  ///< its derivative [2 × N], m²/N
-};
+  struct Slope {
+    double error = 0;  ///< dE/dα [m²/N]; damped and at α = 0, where it is infinite, of the springs
+    Points miss;       ///< [2 × N], m²/N; empty where the rollout diverged
+  };
 
-/// Error at arrival under several gains, and its derivative with respect to each.
-struct ErrorGradient {
-  double error = 0;            ///< E [m]; +∞ where the rollout diverged
-  std::vector<double> slopes;  ///< dE/dα of every group [m²/N]
+  double error = 0;  ///< E [m]; +∞ where the rollout diverged
+  Points miss;       ///< final positions less the target [2 × N], m; empty where it diverged
+  std::vector<Slope> slopes;  ///< by the gain of every group
 };
 
 /// Ways to change a problem's aim offset: each adds a shape to the offset of one of aim_powers.
@@ -93,23 +91,21 @@ class Backend {
   /// arithmetic lets one measure.
   virtual double smallest_disturbance() const = 0;
 
-  /// E(α) at many gains, as `rollout` gives it, from these positions [2 × N]; by default a rollout
-  /// each, over all cores.
-  virtual std::vector<double> errors(std::span<const double> gains, const Points& initial) const;
-  std::vector<double> errors(std::span<const double> gains) const {
+  /// E under many gains, as many groups in each, as `rollout` gives it, from these positions
+  /// [2 × N]; by default a rollout each, over all cores.
+  virtual std::vector<double> errors(std::span<const Gains> gains, const Points& initial) const;
+  std::vector<double> errors(std::span<const Gains> gains) const {
     return errors(gains, problem_.chain.initial);
   }
 
-  /// The same under gains by group, as many groups in all.
-  virtual std::vector<double> grouped_errors(std::span<const Gains> gains) const;
-
-  /// Whether the three below are there: an engine that knows its derivatives.
+  /// Whether the two below are there: an engine that knows its derivatives.
   virtual bool has_slopes() const { return false; }
-  virtual std::vector<ErrorSample> error_samples(std::span<const double> gains) const;
-
-  virtual std::vector<ErrorGradient> error_gradients(std::span<const Gains> gains) const;
-
+  virtual std::vector<ErrorSample> error_samples(std::span<const Gains> gains) const;
   virtual FlightTangent flight_tangent(double gain, const AimDirections& directions) const;
+
+  /// The same at many values of one gain for all modes.
+  std::vector<double> errors(std::span<const double> gains) const;
+  std::vector<ErrorSample> error_samples(std::span<const double> gains) const;
 
  protected:
   Backend(Problem problem, Index steps) : problem_(std::move(problem)), steps_(steps) {}

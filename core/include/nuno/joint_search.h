@@ -13,8 +13,8 @@ namespace nuno {
 struct JointObjective {
   /// E under each [m]; +∞ where a rollout diverged.
   std::function<std::vector<double>(std::span<const Gains> gains)> errors;
-  /// E and dE/dα of every group; empty for an engine that knows no derivative.
-  std::function<std::vector<ErrorGradient>(std::span<const Gains> gains)> gradients;
+  /// E and its derivatives, see Objective.
+  std::function<std::vector<ErrorSample>(std::span<const Gains> gains)> samples;
   double gain_scale = 1;                                          ///< see Objective [N/m]
   double largest_gain = std::numeric_limits<double>::infinity();  ///< of any group [N/m]
   double negligible = 0;                                          ///< see Objective [m]

@@ -14,7 +14,7 @@ namespace nuno {
 struct Objective {
   /// E at each gain [m]; +∞ where a rollout diverged.
   std::function<std::vector<double>(std::span<const double> gains)> errors;
-  /// E, the arrivals and their derivatives; empty for an engine that knows none.
+  /// E, the arrivals and their derivatives; empty for an engine that knows no derivative.
   std::function<std::vector<ErrorSample>(std::span<const double> gains)> samples;
   /// m/t₀² [N/m]: the gain whose oscillation turns by one radian until arrival.
   double gain_scale = 1;
