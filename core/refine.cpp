@@ -281,7 +281,7 @@ RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
   constexpr double single_precision = 1e-5;
   constexpr Index rounds = 4;
   const auto start = std::chrono::steady_clock::now();
-  const double gain = answer.flight.gain;
+  const double gain = answer.flight.gains.rest;
   Problem aimed = problem;
   aimed.aim_offset = answer.aim_offset;
   RefineSummary carried = answer;

@@ -113,19 +113,12 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
 
 }  // namespace
 
-Gains gains_of(const Rollout& flight) {
-  Gains gains(flight.gain);
-  gains.low = flight.low_gains;
-  return gains;
-}
-
 Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options,
                 const Points& initial) {
   assert(std::ranges::min(gains.groups()) >= 0);
   const Problem& problem = backend.problem();
   Rollout result;
-  result.gain = gains.rest;
-  result.low_gains = gains.low;
+  result.gains = gains;
   result.launch_velocity = launch(backend);
   const std::unique_ptr<Simulation> cloth = backend.start(initial, result.launch_velocity);
   Recorder recorder(options.frames_per_second, problem.arrival_time, result);
@@ -169,7 +162,7 @@ Points disturbed(const Chain& chain, double size, unsigned seed) {
 double sensitivity(const Backend& backend, const Rollout& flight) {
   const Chain& chain = backend.problem().chain;
   const Points initial = disturbed(chain, backend.smallest_disturbance());
-  const Rollout twin = rollout(backend, gains_of(flight), {}, initial);
+  const Rollout twin = rollout(backend, flight.gains, {}, initial);
   if (flight.status == RolloutStatus::diverged || twin.status == RolloutStatus::diverged) {
     return std::numeric_limits<double>::infinity();
   }

@@ -67,8 +67,8 @@ Comparison compare_engines(const std::string& scene, const Backend& first, const
     row.seconds = found.seconds;
   }
 
-  const Rollout first_with_other = fly(0, best[1].gain);
-  const Rollout second_with_other = fly(1, best[0].gain);
+  const Rollout first_with_other = fly(0, result.rows[1].gain);
+  const Rollout second_with_other = fly(1, result.rows[0].gain);
   if (result.divergence) return result;
   result.rows[0].error_with_the_other_gain = first_with_other.error.mean;
   result.rows[1].error_with_the_other_gain = second_with_other.error.mean;

@@ -157,7 +157,7 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
                {"scene", scene},
                {"backend", backend.name()},
                {"status", "ok"},
-               {"alpha", rollout.gain},
+               {"alpha", rollout.gains.rest},
                {"time_step", backend.time_step()},
                {"steps", backend.steps()},
                {"cloth_length", problem.chain.length},
@@ -170,7 +170,7 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
                {"control_effort", rollout.control_effort},
                {"max_strain", rollout.max_strain},
                {"sensitivity", sensitivity}};
-  if (!rollout.low_gains.empty()) head["alphas"] = gains_of(rollout).groups();
+  if (rollout.gains.count() > 1) head["alphas"] = rollout.gains.groups();
   if (optimization) head["optimization"] = to_json(*optimization);
   head["launch_velocity"] = to_json(rollout.launch_velocity);
   head["target"] = to_json(problem.target);

@@ -104,7 +104,7 @@ ExitStatus optimize(const OptimizeOptions& options) {
     RefineSummary refined = aim_off(options.backend, file, limits);
     if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.chain.length)) {
       found.refinement = std::move(refined);
-      gains = found.refinement->flight.gain;
+      gains = found.refinement->flight.gains;
       file.problem.aim_offset = found.refinement->aim_offset;
       backend = make_backend(options.backend, file);
     } else {

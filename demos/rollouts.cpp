@@ -32,7 +32,7 @@ std::string divergence_message(const std::string& scene_path, const Backend& bac
                                const Rollout& rollout) {
   const bool stopped = rollout.status == RolloutStatus::diverged;
   return fmt::format("{}: diverged on {} at α = {} N/m in step {} of {}: {}", scene_path,
-                     backend.name(), fmt::join(gains_of(rollout).groups(), ", "),
+                     backend.name(), fmt::join(rollout.gains.groups(), ", "),
                      stopped ? rollout.diverged_at_step : backend.steps(), backend.steps(),
                      stopped ? rollout.reason : "the error is no longer finite");
 }

@@ -25,7 +25,7 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
   const double percent = 100 / chain.length;
   fmt::print(file, "{}: {} particles on {}, {} steps of {}\n", printable(scene), chain.particles(),
              backend.name(), backend.steps(), duration(backend.time_step()));
-  const std::vector<double> gains = gains_of(rollout).groups();
+  const std::vector<double> gains = rollout.gains.groups();
   fmt::print(file, "  {:<17} {:.4g} N/m\n", gains.size() > 1 ? "gains α" : "gain α",
              fmt::join(gains, ", "));
   fmt::print(file, "  {:<17} {:.4g} % of the cloth's length; worst particle {:.4g} %\n", "error",

@@ -249,7 +249,7 @@ const std::vector<CalmMember>& calm_family() {
 }
 
 Points fly_box2d(const CalmMember& member, const box2d::Options& options = {}) {
-  return rollout(*box2d::make_backend(member.problem, options), member.native.gain).final;
+  return rollout(*box2d::make_backend(member.problem, options), member.native.gains).final;
 }
 
 TEST(CalmFamily, EndsInOneShapeOnBothEnginesAndWithBothHinges) {
@@ -281,7 +281,7 @@ TEST(CalmFamily, LeavesHardlyAGapWhenExtrapolatedToZeroStep) {
     const Points coarse = fly_box2d(member, {.time_step = t0 / 1000});
     const Points fine = fly_box2d(member, {.time_step = t0 / 2000});
     const Points native =
-        rollout(*native::make_backend(member.problem, t0 / 12800), member.native.gain).final;
+        rollout(*native::make_backend(member.problem, t0 / 12800), member.native.gains).final;
     // Both are of second order.
     gaps.push_back(gap(member.problem, native, (4 * fine - coarse) / 3));
   }
@@ -313,7 +313,7 @@ TEST(CalmFamily, KeepsItsShapeOnNativeAtHalfTheStep) {
     const auto usual = native::make_backend(member.problem);
     const auto half = native::make_backend(member.problem, usual->time_step() / 2);
     changes.push_back(
-        gap(member.problem, member.native.final, rollout(*half, member.native.gain).final));
+        gap(member.problem, member.native.final, rollout(*half, member.native.gains).final));
   }
   EXPECT_LT(median(changes), 2e-4);
   EXPECT_LT(std::ranges::max(changes), 1e-3);

@@ -192,7 +192,7 @@ TEST(GroupedFlight, WithEqualGainsArrivesLikeOneGain) {
     const Rollout one = rollout(*backend, gain);
     const Rollout four = rollout(*backend, Gains(gain).split(4));
     EXPECT_LT((one.final - four.final).norm(), 1e-12);
-    EXPECT_EQ(gains_of(four).groups(), std::vector<double>(4, gain));
+    EXPECT_EQ(four.gains.groups(), std::vector<double>(4, gain));
   }
 }
 

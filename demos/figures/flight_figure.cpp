@@ -206,7 +206,7 @@ std::string engine_name(std::string_view backend) {
 Flight make_flight(const std::string& scene, const Backend& backend, const Rollout& rollout) {
   return {.scene = scene,
           .backend = std::string(backend.name()),
-          .gain = rollout.gain,
+          .gain = rollout.gains.rest,
           .cloth_length = backend.problem().chain.length,
           .error = rollout.error.mean,
           .max_error = rollout.error.max,

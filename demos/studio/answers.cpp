@@ -78,7 +78,7 @@ std::string drawable(const Throw& done, const std::string& optimizer, const Flig
   Json head = {{"scene", done.file.scene.name},
                {"backend", backend.name()},
                {"status", "ok"},
-               {"alpha", flight.gain},
+               {"alpha", flight.gains.rest},
                {"time_step", backend.time_step()},
                {"steps", backend.steps()},
                {"cloth_length", problem.chain.length},
@@ -122,7 +122,7 @@ Answer throw_answer(const Request& request, std::optional<double> alpha) {
   if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
   Flight frames;
   if (options.frames > 0) {
-    frames = fly(*done.backend, done.flight.gain, options.frames, options.after, request.turn);
+    frames = fly(*done.backend, done.flight.gains, options.frames, options.after, request.turn);
   }
   return {.body = drawable(done, options.optimizer, frames, start)};
 }

@@ -9,10 +9,11 @@
 
 namespace nuno::studio {
 
-Flight fly(const Backend& backend, double gain, Index frames, double after, const Turn& turn) {
+Flight fly(const Backend& backend, const Gains& gains, Index frames, double after,
+           const Turn& turn) {
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
-  const double damping = shape_damping(problem.damping_ratio, gain, problem.chain.particle_mass);
+  const ShapeControl control(problem, gains);
   const Index steps = backend.steps();
   const Index last = steps + static_cast<Index>(std::floor(after / h));
   constexpr Index steps_between_checks = 256;
@@ -25,11 +26,8 @@ Flight fly(const Backend& backend, double gain, Index frames, double after, cons
   for (Index n = 0; n <= last; ++n) {
     if (n % steps_between_checks == 0) turn.check();
     if (!cloth->positions().allFinite()) break;
-    if (gain > 0 && n <= steps) {
-      shape_control(reference.shape(), cloth->positions(), gain, forces);
-      if (damping > 0) {
-        add_shape_damping(reference.velocity(), cloth->velocities(), damping, forces);
-      }
+    if (control.pulls() && n <= steps) {
+      control.pull(reference, cloth->positions(), cloth->velocities(), forces);
     } else {
       forces.setZero();
     }

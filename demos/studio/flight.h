@@ -17,6 +17,7 @@ struct Flight {
 
 /// The flight that `rollout` measures, at `frames` equal intervals until arrival, and for `after`
 /// seconds more in which nothing controls the cloth. Ends early where it diverges.
-Flight fly(const Backend& backend, double gain, Index frames, double after, const Turn& turn);
+Flight fly(const Backend& backend, const Gains& gains, Index frames, double after,
+           const Turn& turn);
 
 }  // namespace nuno::studio

@@ -65,7 +65,7 @@ Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrame
   turn.check();
   if (options.refine) {
     result.refined = aim_off(options.backend, file, {}, [&] { turn.check(); });
-    gain = result.refined->flight.gain;
+    gain = result.refined->flight.gains.rest;
     file.problem.aim_offset = result.refined->aim_offset;
     result.backend = made_ready();
   }

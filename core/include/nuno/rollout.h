@@ -18,8 +18,7 @@ enum class RolloutStatus { ok, diverged };
 /// One flight under one gain.
 struct Rollout {
   RolloutStatus status = RolloutStatus::ok;
-  double gain = 0;                  ///< α [N/m]; of the last group where there are several
-  std::vector<double> low_gains;    ///< α of the groups before it, see Gains [N/m]
+  Gains gains = 0;                  ///< α [N/m]
   Points launch_velocity;           ///< [2 × N], m/s
   Points final;                     ///< positions at arrival [2 × N], m
   ArrivalError error;               ///< infinite where the rollout diverged
@@ -33,9 +32,6 @@ struct Rollout {
 
 /// Launch, then {shape control, step} until arrival, under gains ≥ 0 [N/m]; 0 is launch only.
 Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options = {});
-
-/// The gains of a flight.
-Gains gains_of(const Rollout& flight);
 
 /// The same launch from other positions [2 × N], m.
 Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options,
