@@ -296,7 +296,7 @@ RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
                {.tolerance = std::max(options.tolerance, single_precision), .rounds = rounds});
     carried.rollouts += corrected.rollouts;
     carried.tangents += corrected.tangents;
-    if (corrected.flight.error.mean < carried.flight.error.mean) {
+    if (corrected.flight.error.mean <= carried.flight.error.mean) {
       carried.flight = corrected.flight;
       carried.aim_offset = corrected.aim_offset;
       carried.converged = corrected.converged;

@@ -173,7 +173,7 @@ TEST(Refine, ImprovesThePapersControlToo) {
 }
 
 TEST(Refine, CarriesOverToTheOtherEngineAndIsCorrectedThere) {
-  const Problem problem = reachable(morph_problem(4));
+  const Problem problem = reachable(morph_problem(2));
   const double length = problem.chain.length;
   const double gain = following_gain_of(problem);
   const RefineSummary answer = refine(problem, gain, on_native, on_native);
@@ -182,8 +182,8 @@ TEST(Refine, CarriesOverToTheOtherEngineAndIsCorrectedThere) {
   const double replayed = rollout(*on_box2d(aimed), gain).error.mean;
   EXPECT_LT(replayed, 1e-2 * length);
   const RefineSummary carried = carry_over(problem, answer, on_box2d, on_native);
-  EXPECT_LT(carried.flight.error.mean, replayed);
-  EXPECT_LT(carried.flight.error.mean, 1e-3 * length);
+  EXPECT_TRUE(carried.converged);
+  EXPECT_LT(carried.flight.error.mean, 0.3 * replayed);
   EXPECT_LE(carried.rollouts, answer.rollouts + 7);
   EXPECT_EQ(carried.error_before, rollout(*on_box2d(problem), gain).error.mean);
   aimed.aim_offset = carried.aim_offset;
