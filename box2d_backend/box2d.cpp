@@ -28,12 +28,6 @@ class ChainBackend final : public Backend {
 
   std::string_view name() const override { return "box2d"; }
 
-  double largest_gain() const override {
-    // √(α/m)·h ≤ 0.2 rad: the control's own oscillation takes 30 steps or more.
-    const double h = time_step();
-    return 0.04 * problem().chain.particle_mass / (h * h);
-  }
-
   // v = s·u − q·g and u' = s·(v − q·g).
   DragRecurrence drag_recurrence() const override {
     const double s = scheme_.keep;

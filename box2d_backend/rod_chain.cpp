@@ -22,8 +22,6 @@ Rod make_rod(double length, bool first, bool last) {
   return rod;
 }
 
-// The moment of a hinge is EI·θ/ℓ̄ + ηI·θ̇/ℓ̄.
-//
 // Soft weld: a b2WeldJoint of that stiffness and damping.
 //
 // Spring pair: on either side of the rods, a soft b2DistanceJoint from (−a, ±d) on one to (a, ±d)

@@ -7,6 +7,11 @@
 
 namespace nuno {
 
+double Backend::largest_gain() const {
+  const double h = time_step();
+  return 0.04 * problem().chain.particle_mass / (h * h);
+}
+
 std::vector<double> Backend::errors(std::span<const Gains> gains, const Points& initial) const {
   std::vector<double> result(gains.size());
   parallel_for(static_cast<Index>(gains.size()), [&](Index i) {

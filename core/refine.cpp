@@ -18,6 +18,10 @@
 namespace nuno {
 namespace {
 
+// Why the work ended, for people.
+constexpr const char* arrived = "arrived within the tolerance";
+constexpr const char* too_much_effort = "no flight of so little effort was found";
+
 /// Shapes to aim aside by: cosines along the chain, of few waves where they come early and must not
 /// stretch the cloth on its way, and all of them at the last, where it has to arrive.
 AimDirections aim_directions(Index particles) {
@@ -266,10 +270,10 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
     }
   }
   summary.converged = summary.flight.error.mean <= options.tolerance * length;
-  if (summary.converged) summary.reason = "arrived within the tolerance";
+  if (summary.converged) summary.reason = arrived;
   if (summary.flight.control_effort > options.effort_limit) {
     summary.converged = false;
-    summary.reason = "no flight of so little effort was found";
+    summary.reason = too_much_effort;
   }
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return summary;
@@ -281,6 +285,7 @@ RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
   constexpr double single_precision = 1e-5;
   constexpr Index rounds = 4;
   const auto start = std::chrono::steady_clock::now();
+  const double tolerance = std::max(options.tolerance, single_precision);
   const double gain = answer.flight.gains.rest;
   Problem aimed = problem;
   aimed.aim_offset = answer.aim_offset;
@@ -288,20 +293,27 @@ RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
   carried.flight = rollout(*make(aimed), gain);
   carried.error_before = rollout(*make(problem), gain).error.mean;
   carried.rollouts += 2;
-  carried.converged = carried.flight.error.mean <= options.tolerance * problem.chain.length;
-  // Steps towards the target would leave the trade that an effort limit asked for.
-  if (!carried.converged && !std::isfinite(options.effort_limit)) {
+  carried.converged = carried.flight.error.mean <= tolerance * problem.chain.length;
+  if (carried.converged) {
+    carried.reason = arrived;
+  } else if (std::isfinite(options.effort_limit)) {
+    // Steps towards the target would leave the trade that the limit asked for.
+    carried.reason = "the limit's trade of error for effort, as it was found";
+  } else {
     const RefineSummary corrected =
-        refine(aimed, gain, make, model,
-               {.tolerance = std::max(options.tolerance, single_precision), .rounds = rounds});
+        refine(aimed, gain, make, model, {.tolerance = tolerance, .rounds = rounds});
     carried.rollouts += corrected.rollouts;
     carried.tangents += corrected.tangents;
-    if (corrected.flight.error.mean <= carried.flight.error.mean) {
+    if (corrected.flight.error.mean < carried.flight.error.mean) {
       carried.flight = corrected.flight;
       carried.aim_offset = corrected.aim_offset;
       carried.converged = corrected.converged;
     }
     carried.reason = corrected.reason;
+  }
+  if (carried.flight.control_effort > options.effort_limit) {
+    carried.converged = false;
+    carried.reason = too_much_effort;
   }
   carried.seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

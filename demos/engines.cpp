@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 
 namespace nuno {
 namespace {
@@ -72,10 +71,13 @@ SceneFile parse_scene_file(const std::string& json, const std::string& path) {
   return made_ready(path, parse_scene(json, path));
 }
 
+double frames_per_second_of(double points, const Scene& scene) {
+  return points / static_cast<double>(scene.particles) / scene.arrival_time;
+}
+
 void require_few_frames(const SceneFile& file) {
   const Scene& scene = file.scene;
-  const double most =
-      most_points_in_frames / static_cast<double>(scene.particles) / scene.arrival_time;
+  const double most = frames_per_second_of(most_points_in_frames, scene);
   if (scene.frames_per_second > most) {
     throw InputError(fmt::format(
         "{}: /frames_per_second: {} is not <= {:.4g}, the most that a result of {} particles over "
@@ -113,7 +115,6 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
                                                double gain) {
   std::unique_ptr<Backend> backend = make_backend(name, file);
   // The largest gain goes with 1/h², and an engine may choose shorter steps than it is asked for.
-  constexpr double most_steps = 50e6;  // of either engine
   double steps = 0;
   while (gain > backend->largest_gain()) {
     steps = 2 * std::max(steps, static_cast<double>(backend->steps()));

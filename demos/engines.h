@@ -26,6 +26,9 @@ SceneFile read_scene_file(const std::string& path, std::optional<double> time_st
 /// The same from JSON text that messages call `path`.
 SceneFile parse_scene_file(const std::string& json, const std::string& path);
 
+/// Frames per second with which a flight of this scene holds so many points [1/s].
+double frames_per_second_of(double points, const Scene& scene);
+
 /// Throws InputError if a result of this scene would hold more frames than memory does.
 void require_few_frames(const SceneFile& file);
 
@@ -41,15 +44,17 @@ inline constexpr std::array<std::string_view, 2> backend_names = {"native", "box
 /// where one rollout would take hours.
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file);
 
-/// Makes that engine for the scene's problem aimed elsewhere, see refine.h; `file` must outlive it.
-MakeBackend backend_maker(std::string_view name, const SceneFile& file);
-
 /// The same with a step that is short enough for `gain` as well.
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
                                                double gain);
 
+/// Makes the engine called `name` for the scene's problem aimed elsewhere, see refine.h; `name` and
+/// `file` must outlive it.
+MakeBackend backend_maker(std::string_view name, const SceneFile& file);
+
 /// Aims off on the native chain at its following gain, and carries the answer over to the engine
-/// called `name`. `before_rollout` is called before each rollout; what it throws ends the work.
+/// called `name`. `before_rollout` is called before each rollout and tangent; what it throws ends
+/// the work.
 RefineSummary aim_off(std::string_view name, const SceneFile& file,
                       const RefineOptions& options = {},
                       const std::function<void()>& before_rollout = {});

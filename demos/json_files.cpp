@@ -91,13 +91,14 @@ Json to_json(const Optimization& optimization) {
     const RefineSummary& refinement = *optimization.refinement;
     Json aim_offset = Json::array();
     for (const Points& offset : refinement.aim_offset) aim_offset.push_back(to_json(offset));
-    result["refinement"] = {{"status", refinement.converged ? "converged" : "nearest"},
-                            {"reason", refinement.reason},
-                            {"error_before", refinement.error_before},
-                            {"rollouts", refinement.rollouts},
-                            {"tangents", refinement.tangents},
-                            {"seconds", refinement.seconds},
-                            {"aim_offset", aim_offset}};
+    Json& told = result["refinement"];
+    told = {{"status", refinement.converged ? "converged" : "nearest"},
+            {"reason", refinement.reason},
+            {"rollouts", refinement.rollouts},
+            {"tangents", refinement.tangents},
+            {"seconds", refinement.seconds},
+            {"aim_offset", aim_offset}};
+    if (std::isfinite(refinement.error_before)) told["error_before"] = refinement.error_before;
   }
   return result;
 }

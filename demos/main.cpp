@@ -16,6 +16,9 @@
 #include <string_view>
 #include <vector>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include "commands.h"
 #include "engines.h"
 #include "output.h"
@@ -147,18 +150,31 @@ std::string explain(const CLI::App& app, const CLI::ParseError& error) {
     return what.substr(0, what.find(' ')) + ": is missing; it is required";
   }
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
-    if (what.ends_with("flag override")) {  // "refine was given …", without its dashes
-      return fmt::format("--{}: takes no value", what.substr(0, what.find(' ')));
-    }
     return what.substr(0, what.find(':')) + ": takes exactly one value";
   }
   return what;
 }
 
+/// Throws for a flag with a value: CLI11 would let some pass.
+void require_bare_flags(const CLI::App& app, int argc, char** argv) {
+  std::vector<const CLI::App*> apps = app.get_subcommands([](const CLI::App*) { return true; });
+  apps.push_back(&app);
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const std::string name = argument.substr(0, argument.find('='));
+    if (name.size() == argument.size() || !name.starts_with("-")) continue;
+    for (const CLI::App* each : apps) {
+      const CLI::Option* option = each->get_option_no_throw(name);
+      if (option && option->get_items_expected_max() == 0) {
+        throw CLI::ValidationError(name, "takes no value");
+      }
+    }
+  }
+}
+
 ExitStatus run(int argc, char** argv) {
   CLI::App app("Throws a cloth so that it arrives at a drawn target: in place, in shape, on time.",
                "nuno");
-  app.option_defaults()->disable_flag_override();  // a flag takes no value
   app.set_version_flag("--version", "nuno " NUNO_VERSION, "Print the version and exit");
   app.set_help_flag("--help,-h", "Print this help and exit");
   app.footer(
@@ -353,6 +369,7 @@ ExitStatus run(int argc, char** argv) {
   render_command.callback([&] { chosen = [&] { return render(rendering); }; });
 
   try {
+    require_bare_flags(app, argc, argv);
     app.parse(argc, argv);
   } catch (const CLI::Success& wish) {
     app.exit(wish);  // prints the help or the version
@@ -387,6 +404,9 @@ ExitStatus run_and_complain(int argc, char** argv) {
 int main(int argc, char** argv) {
   // A reader that leaves early is an output that cannot be written, not a silent death.
   std::signal(SIGPIPE, SIG_IGN);
+  // Where standard input is closed, a file of ours would get its number, and a program that we run
+  // would read it.
+  if (fcntl(STDIN_FILENO, F_GETFD) < 0) open("/dev/null", O_RDONLY);
   try {
     return static_cast<int>(nuno::run_and_complain(argc, argv));
   } catch (...) {  // not even the complaint could be written

@@ -4,8 +4,10 @@
 #include <nuno/robust.h>
 #include <nuno/trade_off.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 
 #include "commands.h"
 #include "output.h"
@@ -133,10 +135,12 @@ ExitStatus optimize(const OptimizeOptions& options) {
         found.joint->status == OptimizeStatus::budget ? "rounds ran out" : found.joint->reason);
   }
   if (found.refinement) {
-    fmt::print(summary, "  {:<17} from {:.4g} % in {} rollouts and {} tangents, {}: {}\n",
-               "aiming off", percent * found.refinement->error_before, found.refinement->rollouts,
-               found.refinement->tangents, duration(found.refinement->seconds),
-               found.refinement->reason);
+    const RefineSummary& refined = *found.refinement;
+    fmt::print(summary, "  {:<17} {}{} rollouts and {} tangents, {}: {}\n", "aiming off",
+               std::isfinite(refined.error_before)
+                   ? fmt::format("from {:.4g} % in ", percent * refined.error_before)
+                   : "",
+               refined.rollouts, refined.tangents, duration(refined.seconds), refined.reason);
   }
   return ExitStatus::done;
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -20,13 +21,15 @@ namespace fs = std::filesystem;
       fmt::format("{}: cannot be written: {}", path == "-" ? "standard output" : path, why));
 }
 
+constexpr std::array ending_signals = {SIGINT, SIGTERM, SIGHUP};
+
 /// The signals that end a program wait while this lives, so that none leaves a temporary file.
 class SignalsHeld {
  public:
   SignalsHeld() {
     sigset_t held;
     sigemptyset(&held);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&held, signal);
+    for (const int signal : ending_signals) sigaddset(&held, signal);
     sigprocmask(SIG_BLOCK, &held, &before_);
   }
   ~SignalsHeld() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
@@ -113,7 +116,7 @@ void write_output(const std::string& path, const std::function<void(std::FILE*)>
     const File file(std::fopen(path.c_str(), "w"));
     if (!file) refuse(path, std::strerror(errno));
     write(file.get());
-    if (std::fflush(file.get()) != 0) refuse(path, std::strerror(errno));
+    if (std::fflush(file.get()) != 0 || std::ferror(file.get())) refuse(path, std::strerror(errno));
   } else {
     const SignalsHeld held;
     TemporaryFile file(path, real_path(path));
@@ -122,6 +125,14 @@ void write_output(const std::string& path, const std::function<void(std::FILE*)>
   }
 } catch (const std::system_error& error) {  // fmt::print's, where a disk is full
   refuse(path, error.code().message());
+}
+
+void stop_where_ended() {
+  sigset_t waiting;
+  sigpending(&waiting);
+  for (const int signal : ending_signals) {
+    if (sigismember(&waiting, signal) == 1) throw OutputError("interrupted");
+  }
 }
 
 void create_folder(const std::string& path) {

@@ -28,6 +28,10 @@ void require_writable(const std::string& path);
 /// fails or interrupts leaves what was there. "-" is standard output.
 void write_output(const std::string& path, const std::function<void(std::FILE*)>& write);
 
+/// Throws OutputError if a signal that ends the program came since a file began to be written: it
+/// waits until nothing of the file is left.
+void stop_where_ended();
+
 /// Makes the folder `path` and those above it, if they are not there. Throws OutputError.
 void create_folder(const std::string& path);
 

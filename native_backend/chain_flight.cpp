@@ -5,7 +5,6 @@
 #include <nuno/shape_control.h>
 
 #include <algorithm>
-#include <cstring>
 #include <memory>
 
 #undef HWY_TARGET_INCLUDE

@@ -47,8 +47,8 @@ void step(const ChainPlan& plan, bool first, const double* forces, double* posit
 struct FlightGains {
   std::span<const double> values;  ///< of every group [groups × flights], a flight after another
   const LowModes* low_modes = nullptr;  ///< of all groups but the last; null: there is but one
-  /// The group with respect to whose gain a flight's derivatives are taken; empty: the
-  /// first for all.
+  /// The group with respect to whose gain a flight's derivatives are taken; empty: the first for
+  /// all.
   std::span<const Index> seeds = {};
 
   Index groups() const { return low_modes == nullptr ? 1 : low_modes->group.back() + 2; }

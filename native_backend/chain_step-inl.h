@@ -21,9 +21,8 @@
 //     u'ᵢ = u*ᵢ + p·(Tᵢ₊₁·tᵢ·tᵢ₊₁ − 2Tᵢ + Tᵢ₋₁·tᵢ₋₁·tᵢ),
 // where u* is what all other forces make of u, so the tensions solve a symmetric, diagonally
 // dominant tridiagonal system,
-//     (2 + ℓ/(c⁺p))·τᵢ − cosθᵢ₊₁·τᵢ₊₁ − cosθᵢ·τᵢ₋₁ = u*ᵢ + (EA/c⁺)·(lᵢ − ℓᵢ) + (c⁻/c⁺)·uᵢ,   τ =
-//     p·T,
-// eliminated on the way up the chain and substituted on the way down.
+//     (2 + ℓ/(c⁺p))·τᵢ − cosθᵢ₊₁·τᵢ₊₁ − cosθᵢ·τᵢ₋₁ = u*ᵢ + (EA/c⁺)·(lᵢ − ℓᵢ) + (c⁻/c⁺)·uᵢ,
+// where τ = p·T, eliminated on the way up the chain and substituted on the way down.
 
 #if defined(NUNO_CHAIN_STEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef NUNO_CHAIN_STEP_INL_H_

@@ -11,6 +11,7 @@
 #include "chain_kernel.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -88,12 +89,6 @@ class NativeBackend final : public Backend {
       : Backend(std::move(problem), steps), plan_(make_plan(this->problem(), steps)) {}
 
   std::string_view name() const override { return "native"; }
-
-  double largest_gain() const override {
-    // √(α/m)·h ≤ 0.2 rad: the control's own oscillation takes 30 steps or more.
-    const double h = time_step();
-    return 0.04 * problem().chain.particle_mass / (h * h);
-  }
 
   DragRecurrence drag_recurrence() const override {
     const double rate = problem().chain.drag_rate();
@@ -200,6 +195,7 @@ class NativeBackend final : public Backend {
     GroupedFlights(const Problem& problem, std::span<const Gains> gains, Index copies)
         : modes_(problem.chain.particles(), gains.empty() ? 1 : gains.front().count()) {
       for (const Gains& each : gains) {
+        assert(each.count() == gains.front().count());
         for (Index copy = 0; copy < copies; ++copy) {
           values_.insert(values_.end(), each.low.begin(), each.low.end());
           values_.push_back(each.rest);
@@ -327,7 +323,6 @@ std::unique_ptr<Backend> make_backend(const Problem& problem, std::optional<doub
   // 1/800 of the flight keeps E(α) within 5e-4 of the cloth's length on the reference scenes.
   constexpr double safety = 0.25;
   constexpr double default_steps = 800;
-  constexpr double most_steps = 50e6;
 
   const StableStep stable = stable_step(problem.chain);
   double h = time_step.value_or(problem.arrival_time / default_steps);

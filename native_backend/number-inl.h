@@ -14,7 +14,6 @@
 
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
@@ -290,6 +289,7 @@ HWY_INLINE void store_lanes(Pair<Pack> number, double* values) {
   store_lanes(number.first, values);
   store_lanes(number.second, values + lanes_of(Pack()));
 }
+
 // ---- constants times numbers ----------------------------------------------------------------
 
 /// The number of type T with this value and no slope.

@@ -238,6 +238,32 @@ TEST_F(Pictures, AFilmHasAllItsFramesAndLastsAsLongAsTheFlightAndARest) {
   }
 }
 
+TEST_F(Pictures, AFilmIsThereWholeOrNotAtAll) {
+  if (!is_installed("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
+  const std::string file = result();
+  for (const std::string extension : {"mp4", "gif", "webm"}) {
+    const std::string film = output("film." + extension).string();
+    write_text(film, "precious");
+    const std::string render = "exec " NUNO_PROGRAM " render " + file + " --out " + film;
+    // The disk is full after a few kilobytes.
+    const Outcome full = run("trap '' XFSZ; ulimit -f 8; " + render);
+    EXPECT_EQ(full.status, 1) << extension;
+    EXPECT_EQ(std::ranges::count(full.err, '\n'), 1) << full.err;
+    EXPECT_EQ(read_text(film), "precious");
+    // Ended by a signal to it alone, at a speed at which the film takes long.
+    const Process process({"render", file, "--speed", "0.01", "--out", film}, in_folder("stdout"),
+                          in_folder("stderr"));
+    std::this_thread::sleep_for(500ms);
+    process.send(SIGTERM);
+    EXPECT_EQ(process.wait(), -SIGTERM);
+    EXPECT_EQ(read_text(film), "precious");
+    EXPECT_EQ(outputs(), std::set<std::string>{"film." + extension});
+    EXPECT_EQ(run(render + " <&-").status, 0) << "standard input is closed";
+    EXPECT_GT(fs::file_size(film), 10'000u);
+    fs::remove(film);
+  }
+}
+
 TEST_F(Pictures, WithoutItsProgramsAFilmSaysWhatToInstall) {
   const std::string film = in_folder("film.mp4").string();
   const Outcome made = run("PATH=/nowhere " NUNO_PROGRAM " render " + result() + " --out " + film);

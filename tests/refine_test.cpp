@@ -199,6 +199,8 @@ TEST(Refine, IsOnlyFlownOnTheOtherEngineUnderAnEffortLimit) {
   EXPECT_EQ(carried.aim_offset, answer.aim_offset);
   EXPECT_EQ(carried.rollouts, answer.rollouts + 2);
   EXPECT_NE(carried.flight.final, answer.flight.final);
+  EXPECT_FALSE(carried.converged);
+  EXPECT_NE(carried.reason, "arrived within the tolerance");
 }
 
 TEST(Refine, LeavesTheCentroidWhereItWas) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -255,6 +254,9 @@ std::vector<BadCommand> bad_commands() {
        "--refine: does not go with --coefficients or --robust, it has a gain of its own"},
       {"FlagWithAValue", {"optimize", s, "--refine=x"}, "--refine: takes no value"},
       {"FlagTurnedOff", {"render", s, "--still=false"}, "--still: takes no value"},
+      {"FlagTurnedOn", {"optimize", s, "--refine=true"}, "--refine: takes no value"},
+      {"FlagWithAnEmptyValue", {"optimize", s, "--robust="}, "--robust: takes no value"},
+      {"HelpWithAValue", {"optimize", "-h=x"}, "-h: takes no value"},
       {"VersionWithAValue", {"--version=x"}, "--version: takes no value"},
       {"EmptyOutput", {"simulate", s, "--out", ""}, "--out: \"\" is not a name"},
       {"OutputMissing", {"compare", s, "--out"}, "--out: takes exactly one value"},

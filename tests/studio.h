@@ -118,14 +118,7 @@ class Studio : public Program {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    // Temporary files of its own: what is left there after a test is the studio's.
-    fs::create_directory(in_folder("temporary"));
-    std::string temporary = "TMPDIR=" + in_folder("temporary").string();
-    std::vector<char*> environment = {temporary.data()};
-    for (char** variable = environ; *variable; ++variable) environment.push_back(*variable);
-    environment.push_back(nullptr);
-    ASSERT_EQ(posix_spawn(&process_, NUNO_PROGRAM, &actions, nullptr, arguments.data(),
-                          environment.data()),
+    ASSERT_EQ(posix_spawn(&process_, NUNO_PROGRAM, &actions, nullptr, arguments.data(), environ),
               0);
     posix_spawn_file_actions_destroy(&actions);
     ::close(pipe[1]);

@@ -19,6 +19,15 @@
 namespace nuno {
 namespace {
 
+TEST_F(Studio, AnswersWhole) {
+  for (const char* range : {"0-9", "99999999-", "-1,-2,0-"}) {
+    const std::string answer =
+        post("/api/simulate", small_scene, std::string("Range: bytes=") + range + "\r\n");
+    EXPECT_EQ(status_of(answer), 200) << range;
+    EXPECT_TRUE(json_of(answer).is_object()) << range;
+  }
+}
+
 TEST_F(Studio, ListensOnTheLoopbackAlone) {
   // A socket of /proc/net/tcp: hexadecimal address and port, state 0A listens.
   std::ifstream sockets("/proc/net/tcp");
@@ -72,6 +81,8 @@ TEST_F(Studio, RefusesWithTheMessagesOfTheCommandLine) {
   EXPECT_TRUE(refused("/api/optimize", "{", 400).starts_with("scene.json: /: not JSON"));
   EXPECT_TRUE(refused("/api/optimize", "", 400).starts_with("scene.json: /: not JSON"));
   EXPECT_EQ(refused("/api/simulate?alpha=-1", small_scene, 400), "alpha: -1 is not >= 0");
+  EXPECT_EQ(refused("/api/simulate?alpha=1;frames=2", small_scene, 400),
+            "an option of the address has more than one value");
   EXPECT_EQ(refused("/api/simulate?alpha=nan", small_scene, 400),
             "alpha: \"nan\" is not a finite number");
   EXPECT_EQ(refused("/api/optimize?backend=bullet", small_scene, 400),

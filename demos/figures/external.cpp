@@ -2,23 +2,28 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <mutex>
 #include <sstream>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 namespace nuno {
 namespace {
+
+using namespace std::chrono_literals;
 
 bool is_on_path(const std::string& program) {
   const char* const path = std::getenv("PATH");
@@ -54,7 +59,8 @@ void require_program(const std::string& program, const std::string& package,
 }
 
 void run_program(const std::vector<std::string>& arguments,
-                 const std::function<void(std::FILE*)>& write, std::FILE* out) {
+                 const std::function<void(const Feed&)>& write, std::FILE* out,
+                 const std::function<void()>& wait) {
   const File complaints(std::tmpfile());
   std::array<int, 2> input{};
   if (!complaints || pipe2(input.data(), O_CLOEXEC) != 0) {
@@ -91,19 +97,36 @@ void run_program(const std::vector<std::string>& arguments,
     throw ExternalError(
         fmt::format("{}: cannot be started: {}", arguments[0], std::strerror(error)));
   }
-  std::exception_ptr failure;
-  {
-    const File pipe(fdopen(input[1], "w"));
-    try {
-      write(pipe.get());
-    } catch (...) {  // the child is waited for whatever happens
-      failure = std::current_exception();
-    }
-  }
   int status = 0;
-  while (waitpid(id, &status, 0) < 0 && errno == EINTR) {
+  try {
+    // Not blocked by a program that takes its time, or nobody could end it.
+    fcntl(input[1], F_SETFL, O_NONBLOCK);
+    write([&](std::string_view text) {
+      while (!text.empty()) {
+        const ssize_t taken = ::write(input[1], text.data(), text.size());
+        if (taken >= 0) {
+          text.remove_prefix(static_cast<std::size_t>(taken));
+        } else if (errno == EAGAIN) {
+          pollfd pipe{input[1], POLLOUT, 0};
+          poll(&pipe, 1, 50);
+          wait();
+        } else if (errno != EINTR) {
+          return;  // it has ended, and will say why
+        }
+      }
+    });
+    close(std::exchange(input[1], -1));
+    for (auto pause = 1ms; waitpid(id, &status, WNOHANG) == 0; pause = std::min(2 * pause, 50ms)) {
+      wait();
+      std::this_thread::sleep_for(pause);
+    }
+  } catch (...) {
+    if (input[1] >= 0) close(input[1]);
+    kill(id, SIGKILL);
+    while (waitpid(id, &status, 0) < 0 && errno == EINTR) {
+    }
+    throw;
   }
-  if (failure) std::rethrow_exception(failure);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     throw ExternalError(fmt::format("{} failed: {}", arguments[0], last_line(complaints.get())));
   }
@@ -114,7 +137,7 @@ void require_png() { require_program("rsvg-convert", "librsvg2-bin", "PNG"); }
 void write_png(const std::string& svg, std::FILE* out) {
   run_program(
       {"rsvg-convert", "--unlimited", "--zoom", fmt::format("{}", png_scale)},
-      [&](std::FILE* input) { std::fwrite(svg.data(), 1, svg.size(), input); }, out);
+      [&](const Feed& feed) { feed(svg); }, out);
 }
 
 }  // namespace nuno

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "../output.h"
@@ -19,10 +20,15 @@ class ExternalError : public OutputError {
 void require_program(const std::string& program, const std::string& package,
                      const std::string& purpose);
 
-/// Runs a program whose standard input is what `write` writes and whose output goes to `out`.
-/// Throws ExternalError with the last thing it said if it fails.
-void run_program(const std::vector<std::string>& arguments,
-                 const std::function<void(std::FILE*)>& write, std::FILE* out);
+/// Takes text for the standard input of a program.
+using Feed = std::function<void(std::string_view)>;
+
+/// Runs a program whose standard input is what `write` feeds it and whose output goes to `out`, and
+/// calls `wait` several times a second while it has to wait for it. Throws ExternalError with the
+/// last thing it said if it fails; what `write` and `wait` throw kills it.
+void run_program(
+    const std::vector<std::string>& arguments, const std::function<void(const Feed&)>& write,
+    std::FILE* out, const std::function<void()>& wait = [] {});
 
 inline constexpr double png_scale = 2;
 

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <nuno/scene.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <initializer_list>
 
 #include "../figures/external.h"
+#include "../output.h"
 
 namespace nuno {
 namespace {
@@ -27,7 +31,7 @@ void write_film(const std::vector<figures::Flight>& flights, const figures::Flig
                 const FilmOptions& options, std::FILE* out) {
   const std::string extension = extension_of(options.name);
   // A GIF's frames last whole hundredths of a second.
-  const double frames_per_second = extension == ".gif" ? 25 : options.frames_per_second;
+  const double frames_per_second = extension == ".gif" ? 25 : 60;
   const double shown_for = last_arrival(flights) / options.speed + figures::rest_at_arrival;
   if (!(shown_for * frames_per_second <= most_frames)) {
     throw InputError(fmt::format("--speed: {} makes a film of {:.3g} s, which is not <= {:.3g} s",
@@ -38,28 +42,33 @@ void write_film(const std::vector<figures::Flight>& flights, const figures::Flig
   const int arrived = std::min(
       count - 1, static_cast<int>(
                      std::ceil(last_arrival(flights) / options.speed * frames_per_second - 1e-9)));
+  double share = 0;  // that is made
+  const auto proceed = [&] {
+    if (options.progress) options.progress(share);
+    stop_where_ended();
+  };
   const auto moment = [&](int i) {
     return draw_moment(flights, i / frames_per_second * options.speed, figure);
   };
   // ffmpeg itself makes pictures of SVG, in half the time that they take through PNG. It finds each
   // in a pipe if all are as long as the longest; blanks at the end of a file do no harm.
   std::size_t length = 0;
-  for (int i = 0; i <= arrived; ++i) length = std::max(length, moment(i).svg().size());
+  for (int i = 0; i <= arrived; ++i) {
+    length = std::max(length, moment(i).svg().size());
+    proceed();
+  }
   const double width = moment(0).size().x * (extension == ".gif" ? 1 : png_scale);
   // At rest the last picture stays.
   const std::string rest = fmt::format("tpad=stop_mode=clone:stop={}", count - 1 - arrived);
 
-  std::vector<std::string> arguments = {"ffmpeg",      "-y",
-                                        "-loglevel",   "error",
-                                        "-f",          "image2pipe",
-                                        "-frame_size", fmt::format("{}", length),
-                                        "-framerate",  fmt::format("{}", frames_per_second),
-                                        "-width",      fmt::format("{}", width),
-                                        "-c:v",        "librsvg",
-                                        "-i",          "pipe:0"};
+  std::vector<std::string> arguments = {"ffmpeg", "-y"};
   const auto add = [&](std::initializer_list<std::string> more) {
     arguments.insert(arguments.end(), more.begin(), more.end());
   };
+  add({"-loglevel", "error", "-xerror"});  // or it passes over a full disk
+  add({"-f", "image2pipe", "-frame_size", fmt::format("{}", length)});
+  add({"-framerate", fmt::format("{}", frames_per_second)});
+  add({"-width", fmt::format("{}", width), "-c:v", "librsvg", "-i", "pipe:0"});
   if (extension == ".gif") {
     add({"-vf", rest + ",split[a][b];[a]palettegen=max_colors=64[p];[b][p]paletteuse=dither=none",
          "-loop", "0", "-f", "gif"});
@@ -70,21 +79,22 @@ void write_film(const std::vector<figures::Flight>& flights, const figures::Flig
     add({"-vf", rest, "-c:v", "libvpx-vp9", "-crf", "30", "-b:v", "0", "-deadline", "realtime",
          "-cpu-used", "6", "-row-mt", "1", "-pix_fmt", "yuv420p", "-f", "webm"});
   }
-  // By its name and not as a pipe: a film is finished at its beginning.
+  // Opened anew by its name, see film.h.
   add({"/dev/stdout"});
 
   run_program(
       arguments,
-      [&](std::FILE* ffmpeg) {
+      [&](const Feed& feed) {
         for (int i = 0; i <= arrived; ++i) {
           std::string svg = moment(i).svg();
           svg.resize(length, ' ');
-          std::fwrite(svg.data(), 1, length, ffmpeg);
+          feed(svg);
           show_progress(fmt::format("{}: frame {} of {}", options.name, i + 1, arrived + 1));
-          if (options.progress) options.progress(static_cast<double>(i + 1) / (arrived + 1));
+          share = static_cast<double>(i + 1) / (arrived + 1);
+          proceed();
         }
       },
-      out);
+      out, proceed);
   clear_progress();
 }
 

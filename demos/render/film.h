@@ -10,9 +10,8 @@
 namespace nuno {
 
 struct FilmOptions {
-  std::string name;               ///< its file's, for people; ends in .gif, .mp4 or .webm
-  double speed = 1;               ///< over that of the flight, > 0
-  double frames_per_second = 60;  ///< [1/s]; 25 in a GIF
+  std::string name;  ///< its file's, for people; ends in .gif, .mp4 or .webm
+  double speed = 1;  ///< over that of the flight, > 0
   /// Is told how much of the film is made, 0 … 1; what it throws ends the work.
   std::function<void(double share)> progress = {};
 };

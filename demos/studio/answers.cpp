@@ -60,13 +60,14 @@ Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
 Json to_json(const RefineSummary& refinement) {
   Points at_arrival = Points::Zero(2, refinement.flight.final.cols());
   for (const Points& offset : refinement.aim_offset) at_arrival += offset;
-  return {{"status", refinement.converged ? "converged" : "nearest"},
-          {"error_before", refinement.error_before},
-          {"largest_offset", at_arrival.colwise().norm().maxCoeff()},
-          {"rollouts", refinement.rollouts},
-          {"tangents", refinement.tangents},
-          {"seconds", refinement.seconds},
-          {"reason", refinement.reason}};
+  Json result = {{"status", refinement.converged ? "converged" : "nearest"},
+                 {"largest_offset", at_arrival.colwise().norm().maxCoeff()},
+                 {"rollouts", refinement.rollouts},
+                 {"tangents", refinement.tangents},
+                 {"seconds", refinement.seconds},
+                 {"reason", refinement.reason}};
+  if (std::isfinite(refinement.error_before)) result["error_before"] = refinement.error_before;
+  return result;
 }
 
 /// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -34,6 +35,22 @@ const std::array<Route, 9> routes = {{
     {"POST", "/api/report", {"page"}, report_answer},
 }};
 
+/// Ends a request's turn, and the line that told its progress, however its work ends.
+class AtWork {
+ public:
+  AtWork(Turns& turns, const Request& request) : turns_(turns), request_(request) {}
+  ~AtWork() {
+    turns_.end(request_.options.page, request_.turn);
+    clear_progress();
+  }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+
+ private:
+  Turns& turns_;
+  const Request& request_;
+};
+
 }  // namespace
 
 Answer Api::get(const std::string& path, const Parameters& parameters) {
@@ -54,23 +71,22 @@ Answer Api::answer(std::string_view method, const std::string& path, const Param
   }
   Request request;
   request.body = std::move(body);
-  Answer result;
+  std::optional<AtWork> at_work;
+  if (works) at_work.emplace(turns_, request);
   try {
     request.options = read_options(parameters, route->options);
     const std::string& page = request.options.page;
     request.turn = works ? turns_.begin(page) : turns_.running(page);
-    result = route->answer(request);
+    return route->answer(request);
   } catch (const InputError& error) {
-    result = refusal(400, error.what());
+    return refusal(400, error.what());
   } catch (const OutputError& error) {
-    result = refusal(503, error.what());
+    return refusal(503, error.what());
   } catch (const Cancelled&) {
-    result = refusal(409, "a newer request of this page took its place");
+    return refusal(409, "a newer request of this page took its place");
   } catch (const std::bad_alloc&) {
-    result = refusal(413, "the scene needs more memory than there is");
+    return refusal(413, "the scene needs more memory than there is");
   }
-  if (works) turns_.end(request.options.page, request.turn);
-  return result;
 }
 
 }  // namespace nuno::studio

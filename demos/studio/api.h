@@ -12,7 +12,8 @@ namespace nuno::studio {
 /// What the page asks the program, see API.md. Used by any number of threads.
 class Api {
  public:
-  /// Answers everything, with a refusal where it must; throws nothing but what memory makes it.
+  /// Answers everything, with a refusal where it must. What it throws is the machine's: no memory
+  /// for the answer, no thread.
   Answer get(const std::string& path, const Parameters& parameters);
   Answer post(const std::string& path, const Parameters& parameters, std::string body);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <span>
 #include <thread>
-#include <vector>
 
 namespace nuno::studio {
 namespace {

@@ -3,7 +3,6 @@
 #include <nuno/optimize.h>
 
 #include <atomic>
-#include <cstddef>
 #include <map>
 #include <memory>
 #include <mutex>

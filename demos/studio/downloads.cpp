@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <new>
 #include <optional>
 #include <vector>
@@ -39,19 +40,20 @@ std::string printed(const Write& write) {
     std::free(text);
     throw;
   }
-  std::fclose(file);
-  std::string result(text, size);
-  std::free(text);
-  return result;
+  const bool whole = std::fclose(file) == 0;
+  const std::unique_ptr<char, decltype(&std::free)> owner(text, std::free);
+  if (!whole) throw std::bad_alloc();
+  return {text, size};
 }
 
-std::string contents(std::FILE* file) {
+std::string contents(std::FILE* file, const std::string& name) {
   std::rewind(file);
   std::string text;
   std::array<char, 65536> part;
   while (const std::size_t size = std::fread(part.data(), 1, part.size(), file)) {
     text.append(part.data(), size);
   }
+  if (std::ferror(file)) throw OutputError(name + ": cannot be read back");
   return text;
 }
 
@@ -80,7 +82,6 @@ Answer report_answer(const Request& request) {
       file.scene.name, *native, *box2d,
       {.objective_of = [&](const Backend& backend) { return cancellable(backend, request.turn); },
        .before_rollout = [&] { request.turn.check(); }});
-  clear_progress();
   if (comparison.divergence) {
     const auto& [backend, flight] = *comparison.divergence;
     return diverged_answer(file, backend == "native" ? *native : *box2d, flight);
@@ -97,9 +98,9 @@ Answer film_answer(const Request& request) {
                     file.scene.arrival_time, longest_film));
   }
   const std::string name = "film.mp4";
+  require_film_maker(name);
   const Throw done = throw_cloth(request, request.options.alpha, KeptFrames::of_scene);
   if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
-  require_film_maker(name);
   // A file without a name: nothing of it stays, however the program ends.
   const File film(std::tmpfile());
   if (!film) throw OutputError(name + ": cannot be written: " + std::strerror(errno));
@@ -114,7 +115,7 @@ Answer film_answer(const Request& request) {
                     request.turn.report(share);
                   }},
              film.get());
-  return {.type = "video/mp4", .body = contents(film.get()), .file_name = name};
+  return {.type = "video/mp4", .body = contents(film.get(), name), .file_name = name};
 }
 
 }  // namespace nuno::studio

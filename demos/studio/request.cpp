@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <cmath>
 
@@ -80,6 +81,7 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
       }
       options.frames = static_cast<Index>(frames);
     } else {
+      assert(name == "after");
       options.after = number(name, text);
     }
   }
@@ -119,8 +121,7 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
 
 void require_few_frames_in_file(const SceneFile& file) {
   const Scene& scene = file.scene;
-  const double most =
-      most_points_in_frames / static_cast<double>(scene.particles) / scene.arrival_time;
+  const double most = frames_per_second_of(most_points_in_frames, scene);
   if (scene.frames_per_second > most) {
     throw InputError(
         fmt::format("{}: /frames_per_second: {} is not <= {:.4g}, the most that the studio makes a "

@@ -104,6 +104,16 @@ bool is_ours(const httplib::Request& request, int port) {
          std::ranges::any_of(names, [&](const auto& n) { return origin == "http://" + n; });
 }
 
+/// Whether every part of the query is a name or name=value: httplib would read a=1=2 as a=2.
+bool has_plain_query(std::string_view target) {
+  int equals = 0;
+  for (const char c : target.substr(std::min(target.find('?'), target.size()))) {
+    equals = c == '&' ? 0 : equals + (c == '=');
+    if (equals > 1) return false;
+  }
+  return true;
+}
+
 /// What is wrong with a request before its body is looked at.
 std::optional<Answer> refused(const httplib::Request& request, int port) {
   if (request.target.size() > longest_target) {
@@ -111,6 +121,9 @@ std::optional<Answer> refused(const httplib::Request& request, int port) {
   }
   if (!is_ours(request, port)) {
     return refusal(403, "Host and Origin must be this page's own");
+  }
+  if (!has_plain_query(request.target)) {
+    return refusal(400, "an option of the address has more than one value");
   }
   return std::nullopt;
 }
@@ -123,7 +136,6 @@ void send(httplib::Response& response, Answer answer) {
   response.set_content_provider(
       size, answer.type,
       [body = std::move(answer.body)](std::size_t offset, std::size_t length, auto& sink) {
-        // A client may ask for a range that there is not.
         if (offset >= body.size()) return false;
         return sink.write(body.data() + offset, std::min(length, body.size() - offset));
       });
@@ -166,6 +178,8 @@ void set_routes(httplib::Server& server, studio::Api& api, int port) {
   // recursion goes with the length of the path.
   server.set_pre_routing_handler([&api, port](const auto& request, auto& response) {
     using Result = httplib::Server::HandlerResponse;
+    // An answer is whole: httplib would cut it, or promise what it does not send.
+    const_cast<httplib::Request&>(request).ranges.clear();
     const bool has_length = request.has_header("Content-Length");
     const bool is_chunked = request.has_header("Transfer-Encoding");
     if (request.method == "GET" || request.method == "HEAD") {

@@ -1,8 +1,7 @@
 #include "throw.h"
 
-#include <nuno/optimize.h>
-
 #include <cmath>
+#include <utility>
 
 namespace nuno::studio {
 namespace {
@@ -64,10 +63,13 @@ Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrame
   }
   turn.check();
   if (options.refine) {
-    result.refined = aim_off(options.backend, file, {}, [&] { turn.check(); });
-    gain = result.refined->flight.gains.rest;
-    file.problem.aim_offset = result.refined->aim_offset;
-    result.backend = made_ready();
+    RefineSummary refined = aim_off(options.backend, file, {}, [&] { turn.check(); });
+    if (refined.flight.error.mean < rollout(*result.backend, gain).error.mean) {
+      gain = refined.flight.gains.rest;
+      file.problem.aim_offset = refined.aim_offset;
+      result.refined = std::move(refined);
+      result.backend = made_ready();
+    }
   }
   const double kept = frames == KeptFrames::of_scene ? file.scene.frames_per_second : 0;
   result.flight = rollout(*result.backend, gain, {.frames_per_second = kept});

@@ -18,8 +18,8 @@ struct Throw {
   SceneFile file;
   std::unique_ptr<Backend> backend;
   std::optional<OptimizeSummary> found;
-  std::vector<Evaluation> between;  ///< more of E(α) where the search took long strides
-  std::optional<RefineSummary> refined;
+  std::vector<Evaluation> between;       ///< more of E(α) where the search took long strides
+  std::optional<RefineSummary> refined;  ///< where it was better than the gain alone
   Rollout flight;
 };
 

@@ -34,7 +34,7 @@ struct Options {
 /// A cloth that moves out of Box2D's range (1.9 mean segments or 1.5 rad per step) has diverged:
 /// its positions are NaN from then on. Throws InputError for a scene that Box2D cannot hold: more
 /// than 4096 particles, a segment below 1/1000 of the mean, a step that would make more than
-/// 50 million.
+/// most_steps.
 std::unique_ptr<Backend> make_backend(const Problem& problem, const Options& options = {});
 
 }  // namespace nuno::box2d

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace nuno {
@@ -40,8 +41,10 @@ class Simulation {
 /// How a flight arrives under some gains, and the derivatives with respect to each of them.
 struct ErrorSample {
   struct Slope {
-    double error = 0;  ///< dE/dα [m²/N]; damped and at α = 0, where it is infinite, of the springs
-    Points miss;       ///< [2 × N], m²/N; empty where the rollout diverged
+    /// dE/dα [m²/N]; damped and at α = 0, where it is infinite, of the springs; 0 where the rollout
+    /// diverged.
+    double error = 0;
+    Points miss;  ///< [2 × N], m²/N; empty where it diverged
   };
 
   double error = 0;  ///< E [m]; +∞ where the rollout diverged
@@ -64,6 +67,9 @@ struct FlightTangent {
   Eigen::MatrixXd forces_tangent;  ///< of these [size of forces × directions]
 };
 
+/// Steps of a flight that an engine takes at most.
+inline constexpr double most_steps = 50e6;
+
 /// An engine, made ready for one problem: const, and shared by any number of threads.
 class Backend {
  public:
@@ -74,8 +80,9 @@ class Backend {
   double time_step() const { return problem_.arrival_time / static_cast<double>(steps_); }
   Index steps() const { return steps_; }  ///< a whole number of them ends at t₀
 
-  /// The largest gain that the time step resolves [N/m].
-  virtual double largest_gain() const = 0;
+  /// The largest gain that the time step resolves [N/m]: by default of √(α/m)·h = 0.2 rad, where
+  /// the control's own oscillation takes 30 steps.
+  virtual double largest_gain() const;
   virtual DragRecurrence drag_recurrence() const = 0;
 
   /// A cloth at these positions with these velocities [2 × N], m and m/s. Its segments are at rest
@@ -100,10 +107,14 @@ class Backend {
 
   /// Whether the two below are there: an engine that knows its derivatives.
   virtual bool has_slopes() const { return false; }
+
+  /// E and its derivatives under many gains, as many groups in each, from the initial positions.
   virtual std::vector<ErrorSample> error_samples(std::span<const Gains> gains) const;
+
+  /// The flight at one gain, and its derivatives along these directions.
   virtual FlightTangent flight_tangent(double gain, const AimDirections& directions) const;
 
-  /// The same at many values of one gain for all modes.
+  /// `errors` and `error_samples` at many values of one gain for all modes.
   std::vector<double> errors(std::span<const double> gains) const;
   std::vector<ErrorSample> error_samples(std::span<const double> gains) const;
 

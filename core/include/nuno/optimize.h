@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,7 @@ namespace nuno {
 struct Objective {
   /// E at each gain [m]; +∞ where a rollout diverged.
   std::function<std::vector<double>(std::span<const double> gains)> errors;
-  /// E, the arrivals and their derivatives; empty for an engine that knows no derivative.
+  /// E, the arrivals and their derivatives, one slope each; empty for an engine that knows none.
   std::function<std::vector<ErrorSample>(std::span<const double> gains)> samples;
   /// m/t₀² [N/m]: the gain whose oscillation turns by one radian until arrival.
   double gain_scale = 1;

@@ -4,7 +4,9 @@
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace nuno {
 
@@ -53,8 +55,9 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
                      const MakeBackend& model, const RefineOptions& options = {});
 
 /// Flies what `refine` found with `model` alone on another engine, `make`, and takes away what is
-/// left of its miss there with a few flights more, to 1e-5·L and no further: an engine may compute
-/// in single precision. Under an effort limit it is flown and no more.
+/// left of its miss there with a few flights more. Within 1e-5·L, or the tolerance if that is more,
+/// it has arrived: an engine may compute in single precision. Under an effort limit it is flown and
+/// no more.
 RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
                          const MakeBackend& make, const MakeBackend& model,
                          const RefineOptions& options = {});

@@ -3,8 +3,8 @@
 #include <nuno/backend.h>
 #include <nuno/error.h>
 
-#include <optional>
 #include <string>
+#include <vector>
 
 namespace nuno {
 
@@ -15,10 +15,10 @@ struct RolloutOptions {
 
 enum class RolloutStatus { ok, diverged };
 
-/// One flight under one gain.
+/// One flight, and how it arrived.
 struct Rollout {
   RolloutStatus status = RolloutStatus::ok;
-  Gains gains = 0;                  ///< α [N/m]
+  Gains gains = 0;                  ///< α of every group [N/m]
   Points launch_velocity;           ///< [2 × N], m/s
   Points final;                     ///< positions at arrival [2 × N], m
   ArrivalError error;               ///< infinite where the rollout diverged
