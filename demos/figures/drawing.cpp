@@ -295,11 +295,16 @@ std::string Drawing::placed_labels() const {
         const Anchor anchor = way.x > 0.3    ? Anchor::start
                               : way.x < -0.3 ? Anchor::end
                                              : Anchor::middle;
-        const Vec candidate = {
+        Vec candidate = {
             label.place.x + distance * way.x,
             label.place.y + distance * way.y + 0.35 * font_size + 0.45 * font_size * way.y};
-        const Box box = box_of_text(candidate, width, anchor);
-        double cost = 0.045 * distance + (way.y > 0 ? 0.1 : 0) + (std::abs(way.x) < 0.3 ? 0.1 : 0);
+        Box box = box_of_text(candidate, width, anchor);
+        const double slid = std::max(label.inside.left - box.left, 0.0) +
+                            std::min(label.inside.right() - box.right(), 0.0);
+        candidate.x += slid;
+        box.left += slid;
+        double cost = 0.045 * (distance + std::abs(slid)) + (way.y > 0 ? 0.1 : 0) +
+                      (std::abs(way.x) < 0.3 ? 0.1 : 0);
         if (!is_inside(box, label.inside)) cost += 1000;
         for (const Box& other : taken) {
           if (overlap(box, other)) cost += 100;
