@@ -20,11 +20,13 @@ double largest_difference(std::span<const double> a, std::span<const double> b) 
 Convergence::Convergence(const Backend& native) {
   const double h = native.time_step();
   // The best gain of a finer chain: the one of a step that is too long may be an artefact of it.
-  const std::unique_ptr<Backend> fine = native::make_backend(native.problem(), h / 4);
+  const std::unique_ptr<Backend> fine =
+      native::make_backend(with_time_step(native.problem(), h / 4));
   const double best = global_search(objective(*fine)).gain;
   gains_ = {0, 0.5 * best, best};
-  const std::unique_ptr<Backend> coarser = native::make_backend(native.problem(), h / 16);
-  limit_ = native::make_backend(native.problem(), h / 32);
+  const std::unique_ptr<Backend> coarser =
+      native::make_backend(with_time_step(native.problem(), h / 16));
+  limit_ = native::make_backend(with_time_step(native.problem(), h / 32));
   errors_ = limit_->errors(gains_);
   uncertainty_ = largest_difference(coarser->errors(gains_), errors_);
 }

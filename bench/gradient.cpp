@@ -20,7 +20,8 @@ void gradient(Report& report, const Options& options) {
                                        "{} steps.",
                                        native->steps()));
   const Problem& problem = native->problem();
-  const double scale = problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  const double scale =
+      problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
   const std::vector<double> gains = spread_gains(scale, 64);
   const std::vector<double> errors = native->errors(gains);
   const std::vector<ErrorSample> samples = native->error_samples(gains);
@@ -31,9 +32,9 @@ void gradient(Report& report, const Options& options) {
     const std::array around = {gains[i] - delta, gains[i] + delta};
     const std::vector<double> beside = native->errors(around);
     const double difference = (beside[1] - beside[0]) / (2 * delta);
-    const double unit = problem.chain.length / gains[i];
+    const double unit = problem.cloth().size / gains[i];
     slope_off = std::max(slope_off, std::abs(samples[i].slopes[0].error - difference) / unit);
-    value_off = std::max(value_off, std::abs(samples[i].error - errors[i]) / problem.chain.length);
+    value_off = std::max(value_off, std::abs(samples[i].error - errors[i]) / problem.cloth().size);
   }
   report.check(value_off < 1e-9,
                fmt::format("E beside its derivative is E to {:.0e} of the length", value_off));

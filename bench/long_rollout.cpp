@@ -15,8 +15,8 @@ namespace {
 
 /// A ribbon of the segments that straight-to-s has with 32 particles, but of very many: each as
 /// long, as heavy and as stiff. It lies straight and shall arrive in gentle waves.
-Scene ribbon(Index particles) {
-  Scene scene = straight_to_s(32);
+ChainScene ribbon(Index particles) {
+  ChainScene scene = straight_to_s(32);
   const double segments = static_cast<double>(particles - 1);
   const double length = segments / 31;
   const double share = static_cast<double>(particles) / 32;
@@ -51,8 +51,8 @@ void long_rollout(Report& report, const Options&) {
   reset_peak_memory();
   Problem problem = make_problem(ribbon(particles));
   const double h = problem.arrival_time / static_cast<double>(steps);
-  const double gain = problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
-  const std::unique_ptr<Backend> native = native::make_backend(problem, h);
+  const double gain = problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
+  const std::unique_ptr<Backend> native = native::make_backend(with_time_step(problem, h));
   problem = {};
   const double peak_ready = peak_memory();
   const double ready = memory_in_use();
@@ -62,22 +62,22 @@ void long_rollout(Report& report, const Options&) {
   const double time = seconds(Clock::cpu) - start;
   const double peak = peak_memory();
 
-  const Chain& chain = native->problem().chain;
+  const Chain& chain = native->problem().chain();
   double frames = 0;
   for (const Points& frame : flight.frame_positions) {
     frames += static_cast<double>(frame.size()) * sizeof(double);
   }
   report.check(native->steps() == steps, "it takes these steps");
-  report.check(flight.status == RolloutStatus::ok && flight.error.centroid < 1e-9 * chain.length,
+  report.check(flight.status == RolloutStatus::ok && flight.error.centroid < 1e-9 * chain.size,
                fmt::format("its centroid arrives to {:.0e} of the length",
-                           flight.error.centroid / chain.length));
+                           flight.error.centroid / chain.size));
   const double stretch =
       (segment_lengths(flight.final).array() / chain.rest_length.array() - 1).abs().maxCoeff();
   report.check(stretch < 0.05,
                fmt::format("no segment has stretched by more than {:.0e}", stretch));
   report.check(flight.error.mean < 1, fmt::format("it arrives within {:.2f} m, in waves of ±1 m "
                                                   "over {:.0f} m",
-                                                  flight.error.mean, chain.length));
+                                                  flight.error.mean, chain.size));
 
   const std::string name = fmt::format("N = {}", particles);
   const double n = static_cast<double>(particles);

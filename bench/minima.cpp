@@ -42,22 +42,22 @@ Evaluation scan_and_brent(const Objective& objective) {
 /// minimum is one of the discretisation and not of the cloth.
 bool resolved(const Backend& native, const Evaluation& a, const Evaluation& b) {
   const std::unique_ptr<Backend> finer =
-      native::make_backend(native.problem(), 0.5 * native.time_step());
+      native::make_backend(with_time_step(native.problem(), 0.5 * native.time_step()));
   const std::array gains = {a.gain, b.gain};
   const std::vector<double> errors = finer->errors(gains);
-  const double tolerance = 1e-3 * native.problem().chain.length;
+  const double tolerance = 1e-3 * native.problem().cloth().size;
   return std::abs(errors[0] - a.error) <= tolerance && std::abs(errors[1] - b.error) <= tolerance;
 }
 
-std::vector<Scene> scenes(const Options& options) {
+std::vector<ChainScene> scenes(const Options& options) {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(options.scenes)) {
     if (entry.path().extension() == ".json") paths.push_back(entry.path().string());
   }
   std::ranges::sort(paths);
-  std::vector<Scene> result;
+  std::vector<ChainScene> result;
   for (const std::string& path : paths) result.push_back(read_scene(path));
-  for (Scene& scene : scene_library::family(options.quick ? 8 : 48)) {
+  for (ChainScene& scene : scene_library::family(options.quick ? 8 : 48)) {
     result.push_back(std::move(scene));
   }
   return result;
@@ -72,17 +72,17 @@ void minima(Report& report, const Options& options) {
                "Errors of the global search and of two others on the same objective, the native "
                "chain's own:\na scan of 200 gains with Brent beside the lowest, and steepest "
                "descent from α = 0.");
-  const std::vector<Scene> all = scenes(options);
+  const std::vector<ChainScene> all = scenes(options);
   int not_above_scan = 0, below_scan = 0, below_descent = 0, resolved_scenes = 0;
   double evaluations = 0;
   double worst_over_descent = -1, worst_over_scan = -1;
-  for (const Scene& scene : all) {
+  for (const ChainScene& scene : all) {
     const Problem problem = make_problem(scene);
     const std::unique_ptr<Backend> native = native::make_backend(problem);
     const Objective ours = objective(*native);
     const OptimizeSummary found = global_search(ours);
     const Evaluation scan = scan_and_brent(ours);
-    const double length = problem.chain.length;
+    const double length = problem.cloth().size;
     const double over_scan = (found.error - scan.error) / length;
     const double over_descent = (found.error - steepest_descent(ours).error) / length;
     not_above_scan += over_scan <= tolerance;

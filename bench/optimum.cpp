@@ -33,8 +33,8 @@ std::unique_ptr<Backend> native_within_tolerance(const Problem& problem,
   const Index own = native::make_backend(problem)->steps();
   for (int quarter = 0; quarter < 40; ++quarter) {
     std::unique_ptr<Backend> native = native::make_backend(
-        problem, problem.arrival_time / static_cast<double>(refined(own, quarter)));
-    if (convergence.off(*native) <= tolerance * problem.chain.length) return native;
+        with_time_step(problem, problem.arrival_time / static_cast<double>(refined(own, quarter))));
+    if (convergence.off(*native) <= tolerance * problem.cloth().size) return native;
   }
   throw Refusal("optimum: the native chain does not converge");
 }
@@ -45,7 +45,7 @@ PlainChain plain_within_tolerance(const Problem& problem, PlainLaunch launch,
   const Index fewest = PlainChain::fewest_steps(problem);
   for (int quarter = 0; quarter < 40; ++quarter) {
     PlainChain plain(problem, refined(fewest, quarter), launch);
-    if (convergence.off(plain) <= tolerance * problem.chain.length) return plain;
+    if (convergence.off(plain) <= tolerance * problem.cloth().size) return plain;
   }
   throw Refusal("optimum: the plain chain does not converge to the native one");
 }
@@ -80,7 +80,7 @@ void add_optimum(Report& report, const std::string& name, Index steps, double of
 
 void against_paper(Report& report, Index particles, const Effort& effort) {
   const Problem problem = make_problem(straight_to_s(particles));
-  const double length = problem.chain.length;
+  const double length = problem.cloth().size;
   const Convergence convergence(*native::make_backend(problem));
   report.check(
       convergence.uncertainty() < 0.1 * tolerance * length,
@@ -142,7 +142,7 @@ void against_paper(Report& report, Index particles, const Effort& effort) {
 
 /// A chain so fine that its hinges would want more than `most_steps` gets softer ones.
 Problem with_few_steps(Report& report, Index particles, Index most_steps) {
-  Scene scene = straight_to_s(particles);
+  ChainScene scene = straight_to_s(particles);
   scene.launch = Launch::inextensible;  // one that compresses would buckle so limp a cloth
   const Index wished = native::make_backend(make_problem(scene))->steps();
   if (wished > most_steps) {
@@ -156,10 +156,11 @@ Problem with_few_steps(Report& report, Index particles, Index most_steps) {
 }
 
 void alone(Report& report, const Problem& problem, int repetitions) {
-  const std::string name = fmt::format("N = {}, global search", problem.chain.particles());
+  const std::string name = fmt::format("N = {}, global search", problem.cloth().particles());
   std::unique_ptr<Backend> native = native::make_backend(problem);
   for (int attempt = 0; attempt < 4; ++attempt) {
-    const std::unique_ptr<Backend> finer = native::make_backend(problem, native->time_step() / 4);
+    const std::unique_ptr<Backend> finer =
+        native::make_backend(with_time_step(problem, native->time_step() / 4));
     const Objective ours = objective(*native);
     OptimizeSummary found;
     const std::array<Run, 1> runs = {Run{[&] { return (found = global_search(ours)).error; }}};
@@ -168,30 +169,31 @@ void alone(Report& report, const Problem& problem, int repetitions) {
       return interleave(runs, {repetitions, 0}, Clock::cpu);
     }();
     const double limit = finer->errors({&found.gain, 1}).front();
-    const double off = std::abs(limit - found.error) / problem.chain.length;
+    const double off = std::abs(limit - found.error) / problem.cloth().size;
     if (off < tolerance) {
       report.check(true, fmt::format("{}: E at the best gain is within {:.0e} of that at a quarter "
                                      "of the step",
                                      name, off));
       add_optimum(report, name, native->steps(), off, statistics(times[0]), found,
-                  limit / problem.chain.length);
+                  limit / problem.cloth().size);
       return;
     }
-    native = native::make_backend(problem, native->time_step() / 2);
+    native = native::make_backend(with_time_step(problem, native->time_step() / 2));
   }
   report.check(false, fmt::format("{}: E at the best gain converges", name));
 }
 
 /// The search takes a round more or less by chance, so it is the sum over several scenes.
 void growth(Report& report, int repetitions) {
-  std::vector<Scene> scenes = scene_library::family(5);
+  std::vector<ChainScene> scenes = scene_library::family(5);
   scenes.push_back(straight_to_s(32));
   std::vector<std::unique_ptr<Backend>> small, large;
-  for (Scene& scene : scenes) {
+  for (ChainScene& scene : scenes) {
     scene.particles = 64;
     large.push_back(native::make_backend(make_problem(scene)));
     scene.particles = 32;
-    small.push_back(native::make_backend(make_problem(scene), large.back()->time_step()));
+    small.push_back(
+        native::make_backend(with_time_step(make_problem(scene), large.back()->time_step())));
     report.check(small.back()->steps() == large.back()->steps(),
                  fmt::format("{}: 32 and 64 particles fly in the same {} steps", scene.name,
                              large.back()->steps()));

@@ -27,13 +27,13 @@ Vec2 column(const Points& points, std::size_t i) {
 
 PlainChain::PlainChain(const Problem& problem, Index steps, PlainLaunch launch)
     : problem_(problem), steps_(steps), target_shape_(shape_of(problem.target)) {
-  const Chain& chain = problem.chain;
+  const Chain& chain = problem.chain();
   const double h = problem.arrival_time / static_cast<double>(steps);
-  const double r = 1 - h * chain.drag_rate();
+  const double r = 1 - h * chain.drag_rate;
   launch_velocity_ =
       launch == PlainLaunch::paper
           ? ballistic_launch(chain.initial, problem.target, problem.arrival_time, chain.gravity,
-                             chain.drag_rate())
+                             chain.drag_rate)
           : ballistic_launch(chain.initial, problem.target, chain.gravity, {h, r, h, r, h}, steps);
   if (problem.launch == Launch::inextensible) {
     launch_velocity_ = without_stretching(chain.initial, launch_velocity_);
@@ -41,8 +41,8 @@ PlainChain::PlainChain(const Problem& problem, Index steps, PlainLaunch launch)
 }
 
 double PlainChain::error(double gain) const {
-  const Chain& chain = problem_.chain;
-  const Cloth& cloth = chain.cloth;
+  const Chain& chain = problem_.chain();
+  const ChainMaterial& cloth = chain.material;
   const double h = problem_.arrival_time / static_cast<double>(steps_);
   const double mass = chain.particle_mass;
   const auto n = static_cast<std::size_t>(chain.particles());
@@ -64,7 +64,8 @@ double PlainChain::error(double gain) const {
     for (std::size_t i = 0; i < n; ++i) centroid = centroid + x[i];
     centroid = (1 / static_cast<double>(n)) * centroid;
     for (std::size_t i = 0; i < n; ++i) {
-      f[i] = gain * (target[i] - (x[i] - centroid)) - chain.particle_drag * v[i];
+      f[i] =
+          gain * (target[i] - (x[i] - centroid)) - (chain.drag_rate * chain.particle_mass) * v[i];
       f[i].y -= mass * chain.gravity;
     }
     // Stretch springs and dashpots.
@@ -111,8 +112,8 @@ double PlainChain::error(double gain) const {
 Index PlainChain::fewest_steps(const Problem& problem) {
   // Stable where h²ω² + 2hc < 4. On a straight chain the stretch springs have ω² = 4·EA/(ℓm),
   // c = 4·ηA/(ℓm), and the hinges, across it, ω² = 16·EI/(ℓ³m), c = 16·ηI/(ℓ³m).
-  const Chain& chain = problem.chain;
-  const Cloth& cloth = chain.cloth;
+  const Chain& chain = problem.chain();
+  const ChainMaterial& cloth = chain.material;
   const double shortest = chain.rest_length.minCoeff();
   const auto stable = [](double squared_frequency, double rate) {
     return 4 / (rate + std::sqrt(rate * rate + 4 * squared_frequency));
@@ -133,7 +134,7 @@ Objective PlainChain::objective() const {
     return errors;
   };
   result.gain_scale =
-      problem_.chain.particle_mass / (problem_.arrival_time * problem_.arrival_time);
+      problem_.cloth().particle_mass / (problem_.arrival_time * problem_.arrival_time);
   return result;
 }
 

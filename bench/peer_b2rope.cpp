@@ -44,7 +44,7 @@ struct Variant {
 };
 
 Points fly(const Problem& problem, Index steps, const Variant& variant) {
-  const Chain& chain = problem.chain;
+  const Chain& chain = problem.chain();
   const auto n = static_cast<std::size_t>(chain.particles());
   std::vector<b2Vec2> vertices(n);
   std::vector<float> masses(n, static_cast<float>(chain.particle_mass));
@@ -58,8 +58,8 @@ Points fly(const Problem& problem, Index steps, const Variant& variant) {
   // The effective masses of b2Rope's two constraints in a straight rope.
   const double stretch_mass = chain.particle_mass / 2;
   const double bend_mass = chain.particle_mass * length * length / 6;
-  const double stretch_spring = chain.cloth.stretch_stiffness / length;
-  const double bend_spring = chain.cloth.hinge_stiffness / length;
+  const double stretch_spring = chain.material.stretch_stiffness / length;
+  const double bend_spring = chain.material.hinge_stiffness / length;
   b2RopeDef def;
   def.vertices = vertices.data();
   def.count = static_cast<int32>(n);

@@ -16,7 +16,7 @@ namespace {
 btScalar narrow(double value) { return static_cast<btScalar>(value); }
 
 Points fly(const Problem& problem, Index steps) {
-  const Chain& chain = problem.chain;
+  const Chain& chain = problem.chain();
   btSoftBodyRigidBodyCollisionConfiguration configuration;
   btCollisionDispatcher dispatcher(&configuration);
   btDbvtBroadphase broadphase;

@@ -11,7 +11,7 @@ namespace nuno::bench {
 namespace {
 
 Points fly(const Problem& problem, Index steps) {
-  const Chain& chain = problem.chain;
+  const Chain& chain = problem.chain();
   const std::vector<Rod> rod = rods(chain);
   cpSpace* space = cpSpaceNew();
   cpSpaceSetGravity(space, cpv(0, -chain.gravity));
@@ -32,7 +32,7 @@ Points fly(const Problem& problem, Index steps) {
       const cpVect here = cpv(-rod[i].center, 0);
       joints.push_back(
           cpSpaceAddConstraint(space, cpPivotJointNew2(bodies.back(), body, before, here)));
-      const double stiffness = chain.cloth.hinge_stiffness / chain.hinge_length[column - 1];
+      const double stiffness = chain.material.hinge_stiffness / chain.hinge_length[column - 1];
       joints.push_back(cpSpaceAddConstraint(
           space, cpDampedRotarySpringNew(bodies.back(), body, 0, stiffness, 0)));
     }

@@ -30,7 +30,7 @@ std::string model_xml(const Chain& chain, double h) {
     } else {
       const auto hinge = static_cast<Index>(i - 1);
       xml += fmt::format("<joint type='hinge' axis='0 -1 0' stiffness='{}'/>",
-                         chain.cloth.hinge_stiffness / chain.hinge_length[hinge]);
+                         chain.material.hinge_stiffness / chain.hinge_length[hinge]);
     }
     // MuJoCo wants some inertia about the rod's own axis, about which nothing turns.
     xml += fmt::format("<inertial pos='{} 0 0' mass='{}' diaginertia='{} {} {}'/>", rod[i].center,
@@ -53,7 +53,7 @@ std::shared_ptr<mjModel> compile(const std::string& xml) {
 }
 
 Points fly(const Problem& problem, Index steps, const mjModel* model, mjData* data) {
-  const Chain& chain = problem.chain;
+  const Chain& chain = problem.chain();
   mj_resetData(model, data);
   data->qpos[0] = chain.initial(0, 0);
   data->qpos[1] = chain.initial(1, 0);
@@ -81,7 +81,7 @@ Points fly(const Problem& problem, Index steps, const mjModel* model, mjData* da
 
 std::vector<Peer> mujoco_peers(const Problem& problem, Index steps) {
   const double h = problem.arrival_time / static_cast<double>(steps);
-  const std::shared_ptr<mjModel> model = compile(model_xml(problem.chain, h));
+  const std::shared_ptr<mjModel> model = compile(model_xml(problem.chain(), h));
   const std::shared_ptr<mjData> data(mj_makeData(model.get()), mj_deleteData);
   return {
       {fmt::format("MuJoCo {}, hinges with springs", mj_versionString()), 0.05,

@@ -6,14 +6,14 @@
 
 namespace nuno::bench {
 
-Scene straight_to_s(Index particles) {
-  Scene scene = scene_library::straight_to_s();
+ChainScene straight_to_s(Index particles) {
+  ChainScene scene = scene_library::straight_to_s();
   scene.particles = particles;
   return scene;
 }
 
 Problem release(Index particles) {
-  Scene scene = straight_to_s(particles);
+  ChainScene scene = straight_to_s(particles);
   scene.name = "release";
   scene.cloth.air_drag = 0;
   scene.initial = scene.target;

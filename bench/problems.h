@@ -7,7 +7,7 @@
 namespace nuno::bench {
 
 /// The scene whose optimum is sought: a straight cloth to an S, by this many particles.
-Scene straight_to_s(Index particles);
+ChainScene straight_to_s(Index particles);
 
 /// The flight that every engine can make, those too that take no launch velocity: an S-curve let
 /// go at rest; it falls and unbends, without air. Its target is itself, where it has fallen.

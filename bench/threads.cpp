@@ -18,7 +18,8 @@ void threads(Report& report, const Options& options) {
                                       "and all;\nstraight-to-s, 32 particles, {} steps.",
                                       native->steps()));
   const Problem& problem = native->problem();
-  const double scale = problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  const double scale =
+      problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
   const std::vector<double> gains = spread_gains(scale, 200);
   const auto scan = [&] {
     const std::vector<double> errors = native->errors(gains);

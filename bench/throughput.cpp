@@ -27,7 +27,7 @@ double sum(const std::vector<double>& values) {
 
 void check_native(Report& report, const Backend& native, std::span<const double> gains,
                   std::span<const InstructionSet> sets) {
-  const double length = native.problem().chain.length;
+  const double length = native.problem().cloth().size;
   std::vector<double> first;
   for (const InstructionSet& set : sets) {
     use(set);
@@ -59,8 +59,8 @@ struct Plausibility {
 Plausibility plausibility(const Problem& problem, const Points& final, const Points& native) {
   Plausibility result;
   result.centroid = (centroid(final) - centroid(problem.target)).norm();
-  result.stretch = std::abs(segment_lengths(final).sum() / problem.chain.length - 1);
-  result.shape = shape_difference(final, native).mean / problem.chain.length;
+  result.stretch = std::abs(segment_lengths(final).sum() / problem.cloth().size - 1);
+  result.shape = shape_difference(final, native).mean / problem.cloth().size;
   return result;
 }
 
@@ -70,7 +70,7 @@ void check_flight(Report& report, const Problem& problem, const std::string& nam
   // An Euler scheme of first order falls g·t₀·h/2 too far; twice that, and single precision.
   const double h = problem.arrival_time / static_cast<double>(steps);
   const double centroid_tolerance =
-      problem.chain.gravity * problem.arrival_time * h + 1e-3 * problem.chain.length;
+      problem.cloth().gravity * problem.arrival_time * h + 1e-3 * problem.cloth().size;
   report.check(final.allFinite() && found.centroid < centroid_tolerance && found.stretch < 0.02 &&
                    found.shape <= shape_tolerance,
                fmt::format("{}: falls to {:.1e} m, keeps its length to {:.1e}, has the native "
@@ -91,15 +91,16 @@ void throughput(Report& report, const Options& options) {
   const OnCores one(1);
   const Problem problem = release(particles);
   const double h = problem.arrival_time / static_cast<double>(steps);
-  const std::unique_ptr<Backend> native = native::make_backend(problem, h);
+  const std::unique_ptr<Backend> native = native::make_backend(with_time_step(problem, h));
   report.check(native->steps() == steps, "the native chain takes the same steps");
-  const double scale = problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  const double scale =
+      problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
   const std::vector<double> gains = spread_gains(scale, batch_gains);
   const std::vector<InstructionSet> sets = instruction_sets();
   check_native(report, *native, gains, sets);
 
   const Points ours = rollout(*native, 0).final;
-  const Points exact = rollout(*native::make_backend(problem, h / 16), 0).final;
+  const Points exact = rollout(*native::make_backend(with_time_step(problem, h / 16)), 0).final;
   const std::string scalar_name = fmt::format("native, scalar ({})", sets.front().name);
   check_flight(report, problem, scalar_name, ours, exact, 1e-3);
 
@@ -117,10 +118,7 @@ void throughput(Report& report, const Options& options) {
   std::vector<std::unique_ptr<Backend>> box2d;
   const std::size_t first_box2d = runs.size();
   for (const box2d::Hinge hinge : {box2d::Hinge::soft_weld, box2d::Hinge::spring_pair}) {
-    box2d::Options box2d_options;
-    box2d_options.time_step = h;
-    box2d_options.hinge = hinge;
-    box2d.push_back(box2d::make_backend(problem, box2d_options));
+    box2d.push_back(box2d::make_backend_with({.hinge = hinge}, with_time_step(problem, h)));
     const Backend& backend = *box2d.back();
     names.push_back(fmt::format("Box2D chain, {}", hinge == box2d::Hinge::soft_weld
                                                        ? "soft welds"

@@ -22,19 +22,20 @@ void work_precision(Report& report, const Options& options) {
       "Euler, scalar,\nwith the launch that is exact for its steps, or the paper's.");
   const OnCores one(1);
   const Problem problem = make_problem(straight_to_s(32));
-  const double length = problem.chain.length;
+  const double length = problem.cloth().size;
   const std::unique_ptr<Backend> native = native::make_backend(problem);
   const Convergence convergence(*native);
-  const double scale = problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  const double scale =
+      problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
   const std::vector<double> gains = spread_gains(scale, 64);
   const Effort effort{options.quick ? 3 : 9, 0.005};
 
   // From the longest stable step, which the engine cuts any wish to.
   double previous = 0;
-  for (Index steps = native::make_backend(problem, problem.arrival_time)->steps();
+  for (Index steps = native::make_backend(with_time_step(problem, problem.arrival_time))->steps();
        steps < 20 * native->steps(); steps *= 2) {
-    const std::unique_ptr<Backend> backend =
-        native::make_backend(problem, problem.arrival_time / static_cast<double>(steps));
+    const std::unique_ptr<Backend> backend = native::make_backend(
+        with_time_step(problem, problem.arrival_time / static_cast<double>(steps)));
     const double off = convergence.off(*backend) / length;
     const std::array<Run, 2> runs = {
         Run{[&] {

@@ -22,28 +22,26 @@ constexpr double shortest_rod = 1e-3;  // of the mean rod
 class ChainBackend final : public Backend {
  public:
   ChainBackend(const Problem& problem, const Options& options, Index steps)
-      : Backend(problem, steps),
+      : Backend("box2d", problem, steps),
         chain_(make_rod_chain(problem, options.hinge, steps)),
         scheme_(make_scheme(chain_, options)) {}
 
-  std::string_view name() const override { return "box2d"; }
-
+ private:
   // v = s·u − q·g and u' = s·(v − q·g).
-  DragRecurrence drag_recurrence() const override {
+  DragRecurrence do_drag_recurrence() const override {
     const double s = scheme_.keep;
     const double q = scheme_.half_kick * chain_.h;
     return {chain_.h, s, q, s * s, 2 * s * q};
   }
 
-  std::unique_ptr<Simulation> start(const Points& positions,
-                                    const Points& velocities) const override {
+  std::unique_ptr<Simulation> do_start(const Points& positions,
+                                       const Points& velocities) const override {
     return make_simulation(chain_, scheme_, positions, velocities);
   }
 
   // A hundred times the rounding that a flight collects in single precision.
-  double smallest_disturbance() const override { return 1e-4; }
+  double do_smallest_disturbance() const override { return 1e-4; }
 
- private:
   RodChain chain_;
   Scheme scheme_;
 };
@@ -76,10 +74,14 @@ void require_within_range(const Chain& chain, Hinge form) {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_backend(const Problem& problem, const Options& options) {
+std::unique_ptr<Backend> make_backend_with(const Options& options, const Problem& problem) {
   assert(options.velocity_iterations > 0 && options.position_iterations > 0);
-  require_within_range(problem.chain, options.hinge);
-  return std::make_unique<ChainBackend>(problem, options, count_steps(problem, options.time_step));
+  require_within_range(problem.chain(), options.hinge);
+  return std::make_unique<ChainBackend>(problem, options, count_steps(problem));
+}
+
+std::unique_ptr<Backend> make_backend(const Problem& problem) {
+  return make_backend_with({}, problem);
 }
 
 }  // namespace nuno::box2d

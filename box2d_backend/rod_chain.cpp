@@ -30,7 +30,7 @@ Rod make_rod(double length, bool first, bool last) {
 //     4k·d²·sin φ·[(a/d)²·(1 − cos φ) + cos φ] = (EI/ℓ̄)·θ·(1 + O(θ⁴))
 // for k = EI/(2·ℓ̄·d²) and (a/d)² = 4/3. At tan φ = a/d (θ = 98°) it is 1.6 % too small and the
 // inner spring has no length left. Dashpots ηI/(2·ℓ̄·d²) give (ηI/ℓ̄)·θ̇·(1 + sin²φ/3).
-HingeSpring make_hinge_spring(const Cloth& cloth, double length, const RodChain& chain) {
+HingeSpring make_hinge_spring(const ChainMaterial& cloth, double length, const RodChain& chain) {
   const double unit_moment = chain.unit_force * chain.unit_length;
   HingeSpring spring;
   spring.stiffness = cloth.hinge_stiffness / length / unit_moment;
@@ -47,11 +47,11 @@ HingeSpring make_hinge_spring(const Cloth& cloth, double length, const RodChain&
 }  // namespace
 
 RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps) {
-  const Chain& chain = problem.chain;
+  const Chain& chain = problem.chain();
   const Index rods = chain.particles() - 1;
   RodChain result;
   result.h = problem.arrival_time / static_cast<double>(steps);
-  result.unit_length = chain.length / static_cast<double>(rods);
+  result.unit_length = chain.size / static_cast<double>(rods);
   result.unit_force = chain.particle_mass * result.unit_length / (result.h * result.h);
   result.hinge = hinge;
   for (Index i = 0; i < rods; ++i) {
@@ -59,9 +59,9 @@ RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps) {
     result.rods.push_back(make_rod(length, i == 0, i + 1 == rods));
   }
   for (const double length : chain.hinge_length) {
-    result.hinges.push_back(make_hinge_spring(chain.cloth, length, result));
+    result.hinges.push_back(make_hinge_spring(chain.material, length, result));
   }
-  result.drag_rate = chain.drag_rate() * result.h;
+  result.drag_rate = chain.drag_rate * result.h;
   result.gravity = chain.gravity * result.h * result.h / result.unit_length;
   return result;
 }

@@ -44,41 +44,41 @@ StepLimit hinge_limit(const Chain& chain) {
   const double shortest = chain.rest_length.minCoeff();
   const double per_hinge =
       16 / (chain.hinge_length.minCoeff() * shortest * shortest * chain.particle_mass);
-  const double squared_frequency = per_hinge * chain.cloth.hinge_stiffness;
-  const double rate = per_hinge * chain.cloth.hinge_damping;
-  if (chain.cloth.hinge_stiffness == 0 && chain.cloth.hinge_damping == 0) {
+  const double squared_frequency = per_hinge * chain.material.hinge_stiffness;
+  const double rate = per_hinge * chain.material.hinge_damping;
+  if (chain.material.hinge_stiffness == 0 && chain.material.hinge_damping == 0) {
     return {std::numeric_limits<double>::infinity(), "", 0};
   }
   const double h = limit / (rate + std::sqrt(rate * rate + limit * squared_frequency));
   if (rate * rate > squared_frequency)
-    return {h, "/cloth/hinge_damping", chain.cloth.hinge_damping};
-  return {h, "/cloth/hinge_stiffness", chain.cloth.hinge_stiffness};
+    return {h, "/cloth/hinge_damping", chain.material.hinge_damping};
+  return {h, "/cloth/hinge_stiffness", chain.material.hinge_stiffness};
 }
 
 /// A free flight by no more than a rod per step, half of Box2D's limit.
 StepLimit flight_limit(const Problem& problem) {
-  const Chain& chain = problem.chain;
-  const double rod = chain.length / static_cast<double>(chain.particles() - 1);
+  const Chain& chain = problem.chain();
+  const double rod = chain.size / static_cast<double>(chain.particles() - 1);
   const Points launch = ballistic_launch(chain.initial, problem.target, problem.arrival_time,
-                                         chain.gravity, chain.drag_rate());
+                                         chain.gravity, chain.drag_rate);
   const double fastest = launch.colwise().norm().maxCoeff() + chain.gravity * problem.arrival_time;
   return {rod / fastest, "/arrival_time", problem.arrival_time};
 }
 
 StepLimit drag_limit(const Chain& chain) {
-  return {0.25 / chain.drag_rate(), "/cloth/air_drag", chain.cloth.air_drag};
+  return {0.25 / chain.drag_rate, "/cloth/air_drag", chain.material.air_drag};
 }
 
 }  // namespace
 
-Index count_steps(const Problem& problem, std::optional<double> time_step) {
+Index count_steps(const Problem& problem) {
   StepLimit tightest{problem.arrival_time / default_steps, "/arrival_time", problem.arrival_time};
-  if (time_step) tightest = {*time_step, "/time_step", *time_step};
+  if (problem.time_step) tightest = {*problem.time_step, "/time_step", *problem.time_step};
   if (!(tightest.h > 0)) {
     throw InputError(fmt::format("/time_step: {} is not > 0", tightest.value));
   }
   for (const StepLimit& limit :
-       {hinge_limit(problem.chain), flight_limit(problem), drag_limit(problem.chain)}) {
+       {hinge_limit(problem.chain()), flight_limit(problem), drag_limit(problem.chain())}) {
     if (!(tightest.h <= limit.h)) tightest = limit;
   }
   const double steps = std::ceil(problem.arrival_time / tightest.h * (1 - 1e-12));

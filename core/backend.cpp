@@ -7,12 +7,12 @@
 
 namespace nuno {
 
-double Backend::largest_gain() const {
+double Backend::do_largest_gain() const {
   const double h = time_step();
-  return 0.04 * problem().chain.particle_mass / (h * h);
+  return 0.04 * cloth().particle_mass / (h * h);
 }
 
-std::vector<double> Backend::errors(std::span<const Gains> gains, const Points& initial) const {
+std::vector<double> Backend::do_errors(std::span<const Gains> gains, const Points& initial) const {
   std::vector<double> result(gains.size());
   parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
     const auto at = static_cast<std::size_t>(i);
@@ -21,12 +21,12 @@ std::vector<double> Backend::errors(std::span<const Gains> gains, const Points& 
   return result;
 }
 
-std::vector<ErrorSample> Backend::error_samples(std::span<const Gains>) const {
+std::vector<ErrorSample> Backend::do_error_samples(std::span<const Gains>) const {
   assert(!"this engine has no slopes");
   return {};
 }
 
-FlightTangent Backend::flight_tangent(double, const AimDirections&) const {
+FlightTangent Backend::do_flight_tangent(double, const AimDirections&) const {
   assert(!"this engine has no tangent");
   return {};
 }

@@ -4,10 +4,21 @@
 
 namespace nuno {
 
+ArrivalError arrival_error(const Cloth& cloth, const Points& final, const Points& target) {
+  ArrivalError error = arrival_error(final, target);
+  error.centroid = (cloth.mass_center(final) - cloth.mass_center(target)).norm();
+  return error;
+}
+
 ArrivalError arrival_error(const Points& final, const Points& target) {
   assert(final.rows() == target.rows() && final.cols() == target.cols());
   const Vector distance = (final - target).colwise().stableNorm().transpose();
   return {distance.mean(), distance.maxCoeff(), (centroid(final) - centroid(target)).norm()};
+}
+
+ShapeDifference shape_difference(const Cloth& cloth, const Points& a, const Points& b) {
+  const ArrivalError difference = arrival_error(cloth.shape_of(a), cloth.shape_of(b));
+  return {difference.mean, difference.max};
 }
 
 ShapeDifference shape_difference(const Points& a, const Points& b) {

@@ -9,37 +9,48 @@
 #include <numbers>
 
 namespace nuno {
+namespace {
+
+/// Largest turn of a segment from the initial shape to the target, relative to the mean [rad].
+double turning(const Chain& chain, const Points& target) {
+  Vector turns(chain.rest_length.size());
+  for (Index i = 0; i < turns.size(); ++i) {
+    const Eigen::Vector2d before = chain.initial.col(i + 1) - chain.initial.col(i);
+    const Eigen::Vector2d after = target.col(i + 1) - target.col(i);
+    turns[i] = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
+    if (i > 0) {
+      turns[i] = turns[i - 1] + std::remainder(turns[i] - turns[i - 1], 2 * std::numbers::pi);
+    }
+  }
+  return (turns.array() - turns.mean()).abs().maxCoeff();
+}
+
+}  // namespace
 
 // A segment that stretches at the rate u stops when the thread's energy ½·EA·ε²·ℓ has taken up the
 // kinetic ½·(m/2)·(u·ℓ)² of its two ends: ε = u·√(m·ℓ/(2·EA)). Neighbours that stretch alike share
 // a longer way: over the whole cloth ε = u·L/c at most, c = √(EA·L/M) the speed of sound.
 Feasibility assess(const Backend& backend) {
   const Problem& problem = backend.problem();
-  const Chain& chain = problem.chain;
+  const Cloth& cloth = problem.cloth();
   const Points velocities = launch(backend);
 
   Feasibility result;
   result.time_step = backend.time_step();
   result.steps = backend.steps();
   result.launch_speed = velocities.colwise().norm().maxCoeff();
-  const Vector target_length = segment_lengths(problem.target);
-  Vector turns(chain.rest_length.size());
-  for (Index i = 0; i < turns.size(); ++i) {
-    const Eigen::Vector2d before = chain.initial.col(i + 1) - chain.initial.col(i);
-    const Eigen::Vector2d after = problem.target.col(i + 1) - problem.target.col(i);
-    const Eigen::Vector2d apart = velocities.col(i + 1) - velocities.col(i);
+  for (Index e = 0; e < cloth.rest_length.size(); ++e) {
+    const Index a = cloth.edges(0, e), b = cloth.edges(1, e);
+    const double target_length = (problem.target.col(b) - problem.target.col(a)).stableNorm();
+    const Vector before = cloth.initial.col(b) - cloth.initial.col(a);
+    const Vector apart = velocities.col(b) - velocities.col(a);
     result.length_mismatch =
-        std::max(result.length_mismatch, std::abs(target_length[i] / chain.rest_length[i] - 1));
+        std::max(result.length_mismatch, std::abs(target_length / cloth.rest_length[e] - 1));
     result.launch_stretching = std::max(
-        result.launch_stretching, std::abs(before.normalized().dot(apart)) / chain.rest_length[i]);
-    turns[i] = std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after));
-    if (i > 0) {
-      turns[i] = turns[i - 1] + std::remainder(turns[i] - turns[i - 1], 2 * std::numbers::pi);
-    }
+        result.launch_stretching, std::abs(before.normalized().dot(apart)) / cloth.rest_length[e]);
   }
-  result.turning = (turns.array() - turns.mean()).abs().maxCoeff();
-  const double sound = std::sqrt(chain.cloth.stretch_stiffness * chain.length / chain.cloth.mass);
-  result.launch_strain = result.launch_stretching * chain.length / sound;
+  if (!problem.is_sheet()) result.turning = turning(problem.chain(), problem.target);
+  result.launch_strain = result.launch_stretching * cloth.size / cloth.sound_speed;
   return result;
 }
 

@@ -2,8 +2,10 @@
 
 #include <nuno/reference_motion.h>
 
+#include <Eigen/SparseCholesky>
 #include <cassert>
 #include <cmath>
+#include <vector>
 
 namespace nuno {
 namespace {
@@ -79,19 +81,54 @@ Points without_stretching(const Points& positions, const Points& velocities) {
   return result;
 }
 
+// Minimise ½·Σ mᵢ·|uᵢ − vᵢ|² subject to J·u = 0, J the rows of tₑ·(u_b − u_a): u = v − M⁻¹Jᵀλ with
+// J·M⁻¹·Jᵀ·λ = J·v. A flat sheet has more edges than its plane has ways to move, so the matrix is
+// singular; a trace on its diagonal picks the least λ, and a second pass takes away what that left.
+Points without_stretching(const Cloth& cloth, const Points& positions, const Points& velocities) {
+  const Index d = positions.rows(), edges = cloth.edges.cols();
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(2 * d * edges));
+  for (Index e = 0; e < edges; ++e) {
+    const Index a = cloth.edges(0, e), b = cloth.edges(1, e);
+    const Vector along = (positions.col(b) - positions.col(a)).normalized();
+    for (Index row = 0; row < d; ++row) {
+      entries.emplace_back(e, d * a + row, -along[row]);
+      entries.emplace_back(e, d * b + row, along[row]);
+    }
+  }
+  Eigen::SparseMatrix<double> jacobian(edges, d * positions.cols());
+  jacobian.setFromTriplets(entries.begin(), entries.end());
+  const Vector inverse_mass =
+      cloth.relative_mass.cwiseInverse().transpose().replicate(d, 1).reshaped();
+  const Eigen::SparseMatrix<double> spread = inverse_mass.asDiagonal() * jacobian.transpose();
+  Eigen::SparseMatrix<double> system = jacobian * spread;
+  constexpr double trace = 1e-10;
+  for (Index e = 0; e < edges; ++e) system.coeffRef(e, e) *= 1 + trace;
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(system);
+  Vector u = velocities.reshaped();
+  for (int pass = 0; pass < 2; ++pass) u -= spread * factor.solve(jacobian * u);
+  return u.reshaped(d, positions.cols());
+}
+
+Points without_stretching(const Problem& problem, const Points& velocities) {
+  const Cloth& cloth = problem.cloth();
+  return problem.is_sheet() ? without_stretching(cloth, cloth.initial, velocities)
+                            : without_stretching(cloth.initial, velocities);
+}
+
 Points launch(const Backend& backend) {
   const Problem& problem = backend.problem();
-  Points velocities = ballistic_launch(problem.chain.initial, problem.target, problem.chain.gravity,
+  const Cloth& cloth = problem.cloth();
+  Points velocities = ballistic_launch(cloth.initial, problem.target, cloth.gravity,
                                        backend.drag_recurrence(), backend.steps());
   const ReferenceMotion motion(problem, backend.time_step());
   if (motion.moves()) {
-    velocities = motion.velocity().colwise() + centroid(velocities);
+    velocities = motion.velocity().colwise() + cloth.mass_center(velocities);
   } else {
     velocities += motion.velocity();  // of what it aims aside
   }
-  return problem.launch == Launch::inextensible
-             ? without_stretching(problem.chain.initial, velocities)
-             : velocities;
+  return problem.launch == Launch::inextensible ? without_stretching(problem, velocities)
+                                                : velocities;
 }
 
 }  // namespace nuno

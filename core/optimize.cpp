@@ -61,12 +61,12 @@ Objective objective(const Backend& backend) {
     };
   }
   const Problem& problem = backend.problem();
-  result.gain_scale = problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  result.gain_scale = problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
   // An undamped control of 100 gain scales swings 1½ times until arrival. Beyond, E(α) at the
   // default step and at half of it part by 1e-2 of the cloth's length and more.
   constexpr double most_undamped = 100;
   result.largest_gain = backend.largest_gain();
-  result.negligible = 1e-10 * problem.chain.length;
+  result.negligible = 1e-10 * problem.cloth().size;
   if (problem.damping_ratio < 0.5) {
     result.largest_gain = std::min(result.largest_gain, most_undamped * result.gain_scale);
   }

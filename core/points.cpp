@@ -15,6 +15,17 @@ Vector centroid(const Points& points) {
 
 Points shape_of(const Points& points) { return points.colwise() - centroid(points); }
 
+Vector mass_center(const Points& points, const Vector& relative_mass) {
+  assert(points.cols() > 0 && points.cols() == relative_mass.size());
+  Vector sum = Vector::Zero(points.rows());
+  for (Index i = points.cols(); i-- > 0;) sum += relative_mass[i] * points.col(i);
+  return sum / static_cast<double>(points.cols());
+}
+
+Points shape_of(const Points& points, const Vector& relative_mass) {
+  return points.colwise() - mass_center(points, relative_mass);
+}
+
 Vector segment_lengths(const Points& points) {
   const Index segments = points.cols() - 1;
   return (points.rightCols(segments) - points.leftCols(segments))

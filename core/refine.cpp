@@ -136,8 +136,8 @@ double following_gain(const Backend& backend) {
 RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const Index particles = problem.chain.particles();
-  const double length = problem.chain.length;
+  const Index particles = problem.cloth().particles();
+  const double length = problem.cloth().size;
   Problem aimed = problem;
   if (aimed.aim_offset.empty()) {
     aimed.aim_offset.assign(aim_powers.size(), Points::Zero(2, particles));
@@ -293,7 +293,7 @@ RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
   carried.flight = rollout(*make(aimed), gain);
   carried.error_before = rollout(*make(problem), gain).error.mean;
   carried.rollouts += 2;
-  carried.converged = carried.flight.error.mean <= tolerance * problem.chain.length;
+  carried.converged = carried.flight.error.mean <= tolerance * problem.cloth().size;
   if (carried.converged) {
     carried.reason = arrived;
   } else if (std::isfinite(options.effort_limit)) {

@@ -8,10 +8,10 @@ namespace nuno {
 
 Objective robust_objective(const Backend& backend, const RobustOptions& options) {
   assert(options.size > 0 && options.disturbances >= 1);
-  const Chain& chain = backend.problem().chain;
-  std::vector<Points> starts = {chain.initial};
+  const Problem& problem = backend.problem();
+  std::vector<Points> starts = {problem.cloth().initial};
   for (unsigned seed = 1; seed <= options.disturbances; ++seed) {
-    starts.push_back(disturbed(chain, options.size, seed));
+    starts.push_back(disturbed(problem, options.size, seed));
   }
   Objective result = objective(backend);
   result.samples = nullptr;

@@ -4,6 +4,7 @@
 #include <nuno/reference_motion.h>
 #include <nuno/shape_control.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -44,13 +45,17 @@ class Recorder {
   Rollout& rollout_;
 };
 
-/// Largest |l/ℓ − 1| of the segments; NaN if a position is.
-double largest_strain(const Chain& chain, const Points& x) {
+/// Largest |l/ℓ − 1| of the edges; NaN if a position is.
+double largest_strain(const Cloth& cloth, const Points& x) {
   double largest = 0;
-  for (Index i = 0; i < chain.rest_length.size(); ++i) {
-    const double dx = x(0, i + 1) - x(0, i);
-    const double dy = x(1, i + 1) - x(1, i);
-    const double strain = std::abs(std::sqrt(dx * dx + dy * dy) / chain.rest_length[i] - 1);
+  for (Index e = 0; e < cloth.rest_length.size(); ++e) {
+    const Index a = cloth.edges(0, e), b = cloth.edges(1, e);
+    double squared = 0;
+    for (Index row = 0; row < x.rows(); ++row) {
+      const double apart = x(row, b) - x(row, a);
+      squared += apart * apart;
+    }
+    const double strain = std::abs(std::sqrt(squared) / cloth.rest_length[e] - 1);
     if (std::isnan(strain)) return strain;
     largest = std::max(largest, strain);
   }
@@ -59,48 +64,52 @@ double largest_strain(const Chain& chain, const Points& x) {
 
 }  // namespace
 
-bool is_torn(const Chain& chain, const Points& positions) {
-  return !(largest_strain(chain, positions) < torn_strain);
+bool is_torn(const Cloth& cloth, const Points& positions) {
+  return !(largest_strain(cloth, positions) < torn_strain);
 }
 
 double effort_unit(const Problem& problem) {
-  const Chain& chain = problem.chain;
-  return chain.particle_mass * (chain.gravity > 0
-                                    ? chain.gravity
-                                    : chain.length / (problem.arrival_time * problem.arrival_time));
+  const Cloth& cloth = problem.cloth();
+  return cloth.particle_mass * (cloth.gravity > 0
+                                    ? cloth.gravity
+                                    : cloth.size / (problem.arrival_time * problem.arrival_time));
 }
 
 Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options) {
-  return rollout(backend, gains, options, backend.problem().chain.initial);
+  return rollout(backend, gains, options, backend.cloth().initial);
 }
 
 namespace {
 
 /// Steps until arrival or divergence, which it tells `result`, as it does the strain on the way.
-/// Returns the sum of the squared control forces [N²].
+/// Returns the sum of the squared control forces on particles of mean mass [N²].
 double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Recorder& recorder,
            Rollout& result) {
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
   const ShapeControl control(problem, gains);
   ReferenceMotion reference(problem, h);
-  Points forces = Points::Zero(2, problem.chain.particles());
+  Points forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
+  Points pulls = forces;
   double squared_force = 0;
   recorder.record(0, cloth, false);
   for (Index n = 0; n < backend.steps(); ++n) {
     if (control.pulls()) {
-      control.pull(reference, cloth.positions(), cloth.velocities(), forces);
-      squared_force += forces.squaredNorm();
+      control.pull(reference, cloth.positions(), cloth.velocities(), pulls);
+      squared_force += pulls.squaredNorm();
+      control.to_forces(pulls, forces);
     }
     cloth.step(forces);
     reference.advance();
-    const double strain = largest_strain(problem.chain, cloth.positions());
+    const double strain = largest_strain(problem.cloth(), cloth.positions());
     if (!(strain < torn_strain)) {
       result.status = RolloutStatus::diverged;
       result.diverged_at_step = n + 1;
       result.reason = cloth.failure();
       if (result.reason.empty()) {
-        result.reason = std::isfinite(strain) ? "a segment is a thousand times its length"
+        result.reason = std::isfinite(strain) ? problem.is_sheet()
+                                                    ? "an edge is a thousand times its length"
+                                                    : "a segment is a thousand times its length"
                                               : "a particle's position is no longer finite";
       }
       break;
@@ -126,9 +135,9 @@ Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions
 
   result.final = cloth->positions();
   if (result.status == RolloutStatus::ok) {
-    result.error = arrival_error(result.final, problem.target);
+    result.error = arrival_error(problem.cloth(), result.final, problem.target);
     const double samples =
-        static_cast<double>(backend.steps()) * static_cast<double>(problem.chain.particles());
+        static_cast<double>(backend.steps()) * static_cast<double>(problem.cloth().particles());
     result.control_effort = std::sqrt(squared_force / samples) / effort_unit(problem);
   } else {
     const double infinity = std::numeric_limits<double>::infinity();
@@ -138,35 +147,63 @@ Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions
   return result;
 }
 
-Points disturbed(const Chain& chain, double size, unsigned seed) {
+namespace {
+
+/// Phases like those of sin(i²): every wavelength has its share, and no random generator is needed.
+double pattern(Index i, unsigned seed) {
+  const double k = static_cast<double>(i + 1) + 0.37 * static_cast<double>(seed);
+  return std::sin(1.7 * k + 0.61803 * k * k);
+}
+
+Points turned(const Chain& chain, double amplitude, unsigned seed) {
   const Points& x = chain.initial;
-  // Turns of sin(i²)-like phases: every wavelength has its share, and no random generator is
-  // needed.
-  const auto turned = [&](double amplitude) {
-    Points result(2, x.cols());
-    result.col(0).setZero();
-    for (Index i = 0; i + 1 < x.cols(); ++i) {
-      const double k = static_cast<double>(i + 1) + 0.37 * static_cast<double>(seed);
-      const double turn = amplitude * std::sin(1.7 * k + 0.61803 * k * k);
-      const double c = std::cos(turn), s = std::sin(turn);
-      const Eigen::Vector2d span = x.col(i + 1) - x.col(i);
-      result.col(i + 1) =
-          result.col(i) + Eigen::Vector2d(c * span.x() - s * span.y(), s * span.x() + c * span.y());
-    }
-    return Points(shape_of(result).colwise() + centroid(x));
+  Points result(2, x.cols());
+  result.col(0).setZero();
+  for (Index i = 0; i + 1 < x.cols(); ++i) {
+    const double turn = amplitude * pattern(i, seed);
+    const double c = std::cos(turn), s = std::sin(turn);
+    const Eigen::Vector2d span = x.col(i + 1) - x.col(i);
+    result.col(i + 1) =
+        result.col(i) + Eigen::Vector2d(c * span.x() - s * span.y(), s * span.x() + c * span.y());
+  }
+  return shape_of(result).colwise() + centroid(x);
+}
+
+Points bulged(const Sheet& sheet, double amplitude, unsigned seed) {
+  const Points& x = sheet.initial;
+  Points normals = Points::Zero(3, x.cols());
+  for (Index t = 0; t < sheet.triangles.cols(); ++t) {
+    const auto corners = sheet.triangles.col(t);
+    const Eigen::Vector3d a = x.col(corners[0]), b = x.col(corners[1]), c = x.col(corners[2]);
+    for (const Index i : corners) normals.col(i) += (b - a).cross(c - a);
+  }
+  Points result = x;
+  for (Index i = 0; i < x.cols(); ++i) {
+    result.col(i) += amplitude * sheet.size * pattern(i, seed) * normals.col(i).stableNormalized();
+  }
+  return sheet.shape_of(result).colwise() + sheet.mass_center(x);
+}
+
+}  // namespace
+
+Points disturbed(const Problem& problem, double size, unsigned seed) {
+  const auto moved = [&](double amplitude) {
+    return problem.is_sheet() ? bulged(problem.sheet(), amplitude, seed)
+                              : turned(problem.chain(), amplitude, seed);
   };
-  const double probe = arrival_error(turned(1e-3), x).mean / chain.length;
-  return turned(1e-3 * size / probe);
+  const Cloth& cloth = problem.cloth();
+  const double probe = arrival_error(moved(1e-3), cloth.initial).mean / cloth.size;
+  return moved(1e-3 * size / probe);
 }
 
 double sensitivity(const Backend& backend, const Rollout& flight) {
-  const Chain& chain = backend.problem().chain;
-  const Points initial = disturbed(chain, backend.smallest_disturbance());
+  const Points initial = disturbed(backend.problem(), backend.smallest_disturbance());
   const Rollout twin = rollout(backend, flight.gains, {}, initial);
   if (flight.status == RolloutStatus::diverged || twin.status == RolloutStatus::diverged) {
     return std::numeric_limits<double>::infinity();
   }
-  return arrival_error(twin.final, flight.final).mean / arrival_error(initial, chain.initial).mean;
+  return arrival_error(twin.final, flight.final).mean /
+         arrival_error(initial, backend.cloth().initial).mean;
 }
 
 }  // namespace nuno

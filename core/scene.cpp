@@ -57,16 +57,56 @@ void require_polyline(const std::string& source, std::string_view field, const P
   }
 }
 
+void require_vertices(const std::string& source, std::string_view field, const Points& points) {
+  for (Index i = 0; i < points.cols(); ++i) {
+    for (Index row = 0; row < points.rows(); ++row) {
+      const double value = points(row, i);
+      if (!(std::abs(value) <= largest_scene_number)) {
+        refuse(source, fmt::format("{}/{}/{}", field, i, row),
+               fmt::format("{} is not within ±{}", value, largest_scene_number));
+      }
+    }
+  }
+  const Points size = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
+  const double extent = size.norm();
+  if (!(extent >= smallest_scene_number &&
+        extent >= smallest_relative_length * points.cwiseAbs().maxCoeff())) {
+    refuse(source, field,
+           fmt::format("size {} is not >= {} and {} of its distance from the origin", extent,
+                       smallest_scene_number, smallest_relative_length));
+  }
+}
+
+/// e^z must stay a number with digits to spare.
+void require_drag(const std::string& source, double air_drag, double rate, double arrival_time) {
+  const double drag_turns = rate * arrival_time;
+  if (!(drag_turns <= 700)) {
+    refuse(source, "/cloth/air_drag",
+           fmt::format("{} stops the cloth: air_drag/mass·arrival_time = {} is not <= 700",
+                       air_drag, drag_turns));
+  }
+}
+
+void require_timing(const Scene& scene, const std::string& source) {
+  require_positive(source, "/arrival_time", scene.arrival_time);
+  require_not_negative(source, "/gravity", scene.gravity);
+}
+
+void require_choices(const Scene& scene, const std::string& source) {
+  if (scene.time_step) require_positive(source, "/time_step", *scene.time_step);
+  require_positive(source, "/frames_per_second", scene.frames_per_second);
+  require_not_negative(source, "/damping_ratio", scene.damping_ratio);
+}
+
 }  // namespace
 
-void validate(const Scene& scene, const std::string& source) {
+void validate(const ChainScene& scene, const std::string& source) {
   if (scene.particles < smallest_particles || scene.particles > largest_particles) {
     refuse(source, "/particles",
            fmt::format("{} is not within {} … {}", scene.particles, smallest_particles,
                        largest_particles));
   }
-  require_positive(source, "/arrival_time", scene.arrival_time);
-  require_not_negative(source, "/gravity", scene.gravity);
+  require_timing(scene, source);
   require_polyline(source, "/initial", scene.initial);
   require_polyline(source, "/target", scene.target);
   require_positive(source, "/cloth/mass", scene.cloth.mass);
@@ -75,16 +115,36 @@ void validate(const Scene& scene, const std::string& source) {
   require_not_negative(source, "/cloth/stretch_damping", scene.cloth.stretch_damping);
   require_not_negative(source, "/cloth/hinge_stiffness", scene.cloth.hinge_stiffness);
   require_not_negative(source, "/cloth/hinge_damping", scene.cloth.hinge_damping);
-  if (scene.time_step) require_positive(source, "/time_step", *scene.time_step);
-  require_positive(source, "/frames_per_second", scene.frames_per_second);
-  require_not_negative(source, "/damping_ratio", scene.damping_ratio);
-  // e^z must stay a number with digits to spare.
-  const double drag_turns = scene.cloth.air_drag / scene.cloth.mass * scene.arrival_time;
-  if (!(drag_turns <= 700)) {
-    refuse(source, "/cloth/air_drag",
-           fmt::format("{} stops the cloth: air_drag/mass·arrival_time = {} is not <= 700",
-                       scene.cloth.air_drag, drag_turns));
+  require_choices(scene, source);
+  require_drag(source, scene.cloth.air_drag, scene.cloth.air_drag / scene.cloth.mass,
+               scene.arrival_time);
+}
+
+void validate(const SheetScene& scene, const std::string& source) {
+  if (scene.initial.cols() < smallest_particles || scene.initial.cols() > largest_particles) {
+    refuse(source, "/initial",
+           fmt::format("{} vertices are not within {} … {}", scene.initial.cols(),
+                       smallest_particles, largest_particles));
   }
+  if (scene.target.cols() != scene.initial.cols()) {
+    refuse(source, "/target",
+           fmt::format("{} vertices are not the {} of /initial", scene.target.cols(),
+                       scene.initial.cols()));
+  }
+  require_timing(scene, source);
+  require_vertices(source, "/initial", scene.initial);
+  require_vertices(source, "/target", scene.target);
+  require_positive(source, "/cloth/areal_density", scene.cloth.areal_density);
+  require_not_negative(source, "/cloth/air_drag", scene.cloth.air_drag);
+  require_positive(source, "/cloth/stretch_stiffness", scene.cloth.stretch_stiffness);
+  require_not_negative(source, "/cloth/stretch_damping", scene.cloth.stretch_damping);
+  require_not_negative(source, "/cloth/shear_stiffness", scene.cloth.shear_stiffness);
+  require_not_negative(source, "/cloth/shear_damping", scene.cloth.shear_damping);
+  require_not_negative(source, "/cloth/bending_stiffness", scene.cloth.bending_stiffness);
+  require_not_negative(source, "/cloth/bending_damping", scene.cloth.bending_damping);
+  require_choices(scene, source);
+  require_drag(source, scene.cloth.air_drag, scene.cloth.air_drag / scene.cloth.areal_density,
+               scene.arrival_time);
 }
 
 }  // namespace nuno

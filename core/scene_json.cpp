@@ -185,7 +185,7 @@ Json to_json(const Points& points) {
 
 }  // namespace
 
-Scene parse_scene(const std::string& text, const std::string& source) {
+ChainScene parse_scene(const std::string& text, const std::string& source) {
   const Json json = parse_json(text, source);
   const Field root{source, ""};
   static constexpr std::array<std::string_view, 15> known = {
@@ -204,7 +204,7 @@ Scene parse_scene(const std::string& text, const std::string& source) {
     root.child("arrival_time").refuse("is missing; it is required");
   }
 
-  Scene scene;
+  ChainScene scene;
   scene.name = std::filesystem::path(source).stem().string();
   read(json, root, "name", scene.name);
   read(json, root, "particles", scene.particles);
@@ -237,7 +237,7 @@ Scene parse_scene(const std::string& text, const std::string& source) {
   return scene;
 }
 
-Scene read_scene(const std::string& path) {
+ChainScene read_scene(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
     throw InputError(fmt::format("{}: /: is a directory, not a scene file", path));
@@ -249,7 +249,7 @@ Scene read_scene(const std::string& path) {
   return parse_scene(text, path);
 }
 
-std::string to_json(const Scene& scene) {
+std::string to_json(const ChainScene& scene) {
   Json json;
   json["nuno_scene"] = 1;
   json["name"] = scene.name;

@@ -23,10 +23,11 @@ double shape_damping(double damping_ratio, double gain, double particle_mass) {
 }
 
 ShapeControl::ShapeControl(const Problem& problem, const Gains& gains)
-    : pulls_(gains.largest() > 0),
+    : relative_mass_(problem.cloth().relative_mass),
+      pulls_(gains.largest() > 0),
       gain_(gains.rest),
-      damping_(shape_damping(problem.damping_ratio, gains.rest, problem.chain.particle_mass)),
-      modes_(problem.chain.particles(), gains.count()),
+      damping_(shape_damping(problem.damping_ratio, gains.rest, problem.cloth().particle_mass)),
+      modes_(problem.cloth().particles(), gains.count()),
       excess_gain_(modes_.count()),
       excess_damping_(modes_.count()) {
   for (Index j = 0; j < modes_.count(); ++j) {
@@ -34,18 +35,22 @@ ShapeControl::ShapeControl(const Problem& problem, const Gains& gains)
         gains.low[static_cast<std::size_t>(modes_.group[static_cast<std::size_t>(j)])];
     excess_gain_[j] = gain - gain_;
     excess_damping_[j] =
-        shape_damping(problem.damping_ratio, gain, problem.chain.particle_mass) - damping_;
+        shape_damping(problem.damping_ratio, gain, problem.cloth().particle_mass) - damping_;
   }
 }
 
 void ShapeControl::pull(const ReferenceMotion& reference, const Points& positions,
-                        const Points& velocities, Points& forces) const {
-  shape_control(reference.shape(), positions, gain_, forces);
-  if (damping_ > 0) add_shape_damping(reference.velocity(), velocities, damping_, forces);
+                        const Points& velocities, Points& pulls) const {
+  const Vector center = mass_center(positions, relative_mass_);
+  pulls = gain_ * (reference.shape() - (positions.colwise() - center));
+  if (damping_ > 0) {
+    const Vector drift = mass_center(velocities, relative_mass_);
+    pulls += damping_ * (reference.velocity() - (velocities.colwise() - drift));
+  }
   if (modes_.count() == 0) return;
   // Summed in the native kernel's order, so that both agree to the last bit.
-  const Points offset = reference.shape() - shape_of(positions);
-  const Points lag = reference.velocity() - shape_of(velocities);
+  const Points offset = reference.shape() - shape_of(positions, relative_mass_);
+  const Points lag = reference.velocity() - shape_of(velocities, relative_mass_);
   Points spring = Points::Zero(positions.rows(), modes_.count());
   Points dashpot = spring;
   for (Index i = 0; i < positions.cols(); ++i) {
@@ -54,8 +59,12 @@ void ShapeControl::pull(const ReferenceMotion& reference, const Points& position
   }
   for (Index j = 0; j < modes_.count(); ++j) {
     const Vector amplitude = excess_gain_[j] * spring.col(j) + excess_damping_[j] * dashpot.col(j);
-    forces += amplitude * modes_.shapes.row(j);
+    pulls += amplitude * modes_.shapes.row(j);
   }
+}
+
+void ShapeControl::to_forces(const Points& pulls, Points& forces) const {
+  forces = pulls.array().rowwise() * relative_mass_.transpose().array();
 }
 
 }  // namespace nuno

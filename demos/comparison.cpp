@@ -34,7 +34,7 @@ Comparison compare_engines(const std::string& scene, const Backend& first, const
   const std::array<const Backend*, 2> engines = {&first, &second};
   Comparison result;
   result.scene = scene;
-  result.cloth_length = first.problem().chain.length;
+  result.cloth_length = first.problem().cloth().size;
   result.launch = first.problem().launch;
 
   // A rollout that has to arrive; the first that does not ends the comparison.

@@ -23,6 +23,7 @@ bool too_long(double steps, const SceneFile& file) {
 
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file,
                                       std::optional<double> time_step) {
+  const Problem problem = with_time_step(file.problem, time_step);
   if (time_step && too_long(file.scene.arrival_time / *time_step, file)) {
     throw InputError(fmt::format(
         "{}: /time_step: {} is not >= {:.4g}: {} particles over {} s would take too long",
@@ -33,10 +34,10 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
   std::unique_ptr<Backend> backend;
   try {
     if (name == "native") {
-      backend = native::make_backend(file.problem, time_step);
+      backend = native::make_backend(problem);
     } else {
       assert(name == "box2d");
-      backend = box2d::make_backend(file.problem, {.time_step = time_step});
+      backend = box2d::make_backend(problem);
     }
   } catch (const InputError& error) {
     // An engine knows the problem, but not the file that it came from.
@@ -51,7 +52,7 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
   return backend;
 }
 
-SceneFile made_ready(const std::string& path, Scene scene) {
+SceneFile made_ready(const std::string& path, ChainScene scene) {
   Problem problem = make_problem(scene, path);
   return {path, std::move(scene), std::move(problem)};
 }
@@ -59,7 +60,7 @@ SceneFile made_ready(const std::string& path, Scene scene) {
 }  // namespace
 
 SceneFile read_scene_file(const std::string& path, std::optional<double> time_step) {
-  Scene scene = read_scene(path);
+  ChainScene scene = read_scene(path);
   if (time_step) {
     scene.time_step = time_step;
     validate(scene, "--time-step");
@@ -71,12 +72,12 @@ SceneFile parse_scene_file(const std::string& json, const std::string& path) {
   return made_ready(path, parse_scene(json, path));
 }
 
-double frames_per_second_of(double points, const Scene& scene) {
+double frames_per_second_of(double points, const ChainScene& scene) {
   return points / static_cast<double>(scene.particles) / scene.arrival_time;
 }
 
 void require_few_frames(const SceneFile& file) {
-  const Scene& scene = file.scene;
+  const ChainScene& scene = file.scene;
   const double most = frames_per_second_of(most_points_in_frames, scene);
   if (scene.frames_per_second > most) {
     throw InputError(fmt::format(

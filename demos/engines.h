@@ -16,7 +16,7 @@ namespace nuno {
 /// A scene file, read, validated and resampled.
 struct SceneFile {
   std::string path;
-  Scene scene;
+  ChainScene scene;
   Problem problem;
 };
 
@@ -27,7 +27,7 @@ SceneFile read_scene_file(const std::string& path, std::optional<double> time_st
 SceneFile parse_scene_file(const std::string& json, const std::string& path);
 
 /// Frames per second with which a flight of this scene holds so many points [1/s].
-double frames_per_second_of(double points, const Scene& scene);
+double frames_per_second_of(double points, const ChainScene& scene);
 
 /// Throws InputError if a result of this scene would hold more frames than memory does.
 void require_few_frames(const SceneFile& file);

@@ -74,7 +74,7 @@ void add_scene(CLI::App& command, std::string& scene) {
   command
       .add_option_function<std::string>(
           "SCENE", [&](const std::string& text) { scene = not_empty("SCENE", text); },
-          "Scene file (JSON)")
+          "ChainScene file (JSON)")
       ->type_name("")
       ->required();
 }

@@ -44,7 +44,7 @@ Optimization trade(const OptimizeOptions& options, const SceneFile& file, const 
   if (found.trade_off.empty()) return found;  // every rollout diverged
   TradeOffPoint point;
   if (options.error_limit) {
-    const double limit = *options.error_limit * file.problem.chain.length;
+    const double limit = *options.error_limit * file.problem.cloth().size;
     const auto kept = least_effort(backend, found.trade_off, limit, count);
     point = kept.value_or(found.trade_off.back());
     summary.status = kept ? OptimizeStatus::converged : OptimizeStatus::budget;
@@ -104,7 +104,7 @@ ExitStatus optimize(const OptimizeOptions& options) {
     if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
     if (options.effort_limit) limits.effort_limit = *options.effort_limit;
     RefineSummary refined = aim_off(options.backend, file, limits);
-    if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.chain.length)) {
+    if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.cloth().size)) {
       found.refinement = std::move(refined);
       gains = found.refinement->flight.gains;
       file.problem.aim_offset = found.refinement->aim_offset;
@@ -116,7 +116,7 @@ ExitStatus optimize(const OptimizeOptions& options) {
   // If every rollout diverged, the one at the gain it ended on says why.
   const ExitStatus status = fly(file, *backend, gains, options.out, found);
   if (status != ExitStatus::done) return status;
-  const double percent = 100 / file.problem.chain.length;
+  const double percent = 100 / file.problem.cloth().size;
   if (found.robust_error) {
     fmt::print(summary, "  {:<17} {:.4g} % of the cloth's length, mean of {} disturbed starts\n",
                "robust error", percent * *found.robust_error, 1 + RobustOptions().disturbances);

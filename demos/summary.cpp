@@ -15,14 +15,14 @@ std::string duration(double seconds) {
   return fmt::format("{} min {} s", whole / 60, whole % 60);
 }
 
-std::string effort_unit_name(const Chain& chain) {
-  return chain.gravity > 0 ? "of a particle's weight" : "of m·L/t0²";
+std::string effort_unit_name(const Cloth& cloth) {
+  return cloth.gravity > 0 ? "of a particle's weight" : "of m·L/t0²";
 }
 
 void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,
                    const Rollout& rollout, double sensitivity) {
-  const Chain& chain = backend.problem().chain;
-  const double percent = 100 / chain.length;
+  const Chain& chain = backend.problem().chain();
+  const double percent = 100 / chain.size;
   fmt::print(file, "{}: {} particles on {}, {} steps of {}\n", printable(scene), chain.particles(),
              backend.name(), backend.steps(), duration(backend.time_step()));
   const std::vector<double> gains = rollout.gains.groups();

@@ -11,7 +11,7 @@ namespace nuno {
 std::string duration(double seconds);
 
 /// What control effort is measured in, for people.
-std::string effort_unit_name(const Chain& chain);
+std::string effort_unit_name(const Cloth& cloth);
 
 /// A few lines for people on what a rollout did, and whether its answer is fragile.
 void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,

@@ -6,7 +6,7 @@
 #include <iostream>
 
 int main() {
-  nuno::Scene scene;
+  nuno::ChainScene scene;
   scene.arrival_time = 1;
   scene.initial = nuno::Points{{0, 1}, {1, 1}};  // a row for x, a row for y, a column per point
   scene.target = nuno::Points{{3.0, 3.2, 3.5, 3.8, 4.0}, {1.0, 1.3, 1.4, 1.3, 1.0}};

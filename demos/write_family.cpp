@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  for (const nuno::Scene& scene : nuno::scene_library::family(scenes)) {
+  for (const nuno::ChainScene& scene : nuno::scene_library::family(scenes)) {
     const std::filesystem::path path = folder / (scene.name + ".json");
     std::ofstream file(path);
     file << nuno::to_json(scene) << '\n';

@@ -24,11 +24,11 @@ double kick_duration(double drag_rate, double h) {
 }
 
 ChainPlan::Kick make_kick(const Chain& chain, double h, double duration, double new_length_weight) {
-  const double stiffness = chain.cloth.stretch_stiffness;
-  const double damping = chain.cloth.stretch_damping;
-  const double q = kick_duration(chain.drag_rate(), duration);
+  const double stiffness = chain.material.stretch_stiffness;
+  const double damping = chain.material.stretch_damping;
+  const double q = kick_duration(chain.drag_rate, duration);
   ChainPlan::Kick kick;
-  kick.keep = std::exp(-chain.drag_rate() * duration);
+  kick.keep = std::exp(-chain.drag_rate * duration);
   kick.fall = q * chain.gravity;
   kick.force = q / chain.particle_mass;
   const double after = stiffness * h * new_length_weight + damping / 2;
@@ -41,7 +41,7 @@ ChainPlan::Kick make_kick(const Chain& chain, double h, double duration, double 
 
 /// Of a problem that outlives it.
 ChainPlan make_plan(const Problem& problem, Index steps) {
-  const Chain& chain = problem.chain;
+  const Chain& chain = problem.chain();
   ChainPlan plan;
   plan.particles = chain.particles();
   plan.steps = steps;
@@ -54,8 +54,9 @@ ChainPlan make_plan(const Problem& problem, Index steps) {
     }
     return result;
   };
-  plan.hinge_spring = at_hinges(chain.cloth.hinge_stiffness);
-  if (chain.cloth.hinge_damping > 0) plan.hinge_dashpot = at_hinges(chain.cloth.hinge_damping);
+  plan.hinge_spring = at_hinges(chain.material.hinge_stiffness);
+  if (chain.material.hinge_damping > 0)
+    plan.hinge_dashpot = at_hinges(chain.material.hinge_damping);
   plan.particle_mass = chain.particle_mass;
   plan.damping_ratio = problem.damping_ratio;
   plan.first = make_kick(chain, plan.h, plan.h / 2, 0.5);
@@ -86,26 +87,23 @@ class ChainSimulation final : public Simulation {
 class NativeBackend final : public Backend {
  public:
   NativeBackend(Problem problem, Index steps)
-      : Backend(std::move(problem), steps), plan_(make_plan(this->problem(), steps)) {}
+      : Backend("native", std::move(problem), steps), plan_(make_plan(this->problem(), steps)) {}
 
-  std::string_view name() const override { return "native"; }
-
-  DragRecurrence drag_recurrence() const override {
-    const double rate = problem().chain.drag_rate();
+ private:
+  DragRecurrence do_drag_recurrence() const override {
+    const double rate = cloth().drag_rate;
     const double h = time_step();
     return {h, plan_.first.keep, kick_duration(rate, h / 2), plan_.full.keep,
             kick_duration(rate, h)};
   }
 
-  std::unique_ptr<Simulation> start(const Points& positions,
-                                    const Points& velocities) const override {
+  std::unique_ptr<Simulation> do_start(const Points& positions,
+                                       const Points& velocities) const override {
     return std::make_unique<ChainSimulation>(plan_, positions, velocities);
   }
 
-  // A millionth of it is the rounding of a flight (1e-14).
-  double smallest_disturbance() const override { return 1e-8; }
-
-  std::vector<double> errors(std::span<const Gains> gains, const Points& initial) const override {
+  std::vector<double> do_errors(std::span<const Gains> gains,
+                                const Points& initial) const override {
     const GroupedFlights flights(problem(), gains, 1);
     std::vector<double> result;
     for (const Arrival& arrival : fly_over(flights.gains(), initial, false)) {
@@ -114,13 +112,13 @@ class NativeBackend final : public Backend {
     return result;
   }
 
-  bool has_slopes() const override { return true; }
+  bool do_has_slopes() const override { return true; }
 
-  std::vector<ErrorSample> error_samples(std::span<const Gains> gains) const override {
+  std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const override {
     if (gains.empty()) return {};
     const auto groups = static_cast<std::size_t>(gains.front().count());
     const GroupedFlights flights(problem(), gains, gains.front().count());
-    std::vector<Arrival> arrivals = fly_over(flights.gains(), problem().chain.initial, true);
+    std::vector<Arrival> arrivals = fly_over(flights.gains(), cloth().initial, true);
     std::vector<ErrorSample> result(gains.size());
     for (std::size_t i = 0; i < arrivals.size(); ++i) {
       ErrorSample& sample = result[i / groups];
@@ -131,9 +129,9 @@ class NativeBackend final : public Backend {
     return result;
   }
 
-  FlightTangent flight_tangent(double gain, const AimDirections& directions) const override {
+  FlightTangent do_flight_tangent(double gain, const AimDirections& directions) const override {
     const ReferenceMotion reference(problem(), time_step());
-    const Points& initial = problem().chain.initial;
+    const Points& initial = cloth().initial;
     const Index size = initial.size();
     const Index count = directions.shapes.cols();
     Eigen::MatrixXd shapes(size, count), launches(size, count);
@@ -187,13 +185,12 @@ class NativeBackend final : public Backend {
     return tangent;
   }
 
- private:
   /// Gains by group in the kernel's layout: each of them `copies` times, with the slope by another
   /// group each time.
   class GroupedFlights {
    public:
     GroupedFlights(const Problem& problem, std::span<const Gains> gains, Index copies)
-        : modes_(problem.chain.particles(), gains.empty() ? 1 : gains.front().count()) {
+        : modes_(problem.chain().particles(), gains.empty() ? 1 : gains.front().count()) {
       for (const Gains& each : gains) {
         assert(each.count() == gains.front().count());
         for (Index copy = 0; copy < copies; ++copy) {
@@ -217,7 +214,7 @@ class NativeBackend final : public Backend {
     constexpr double felt = 1e-12;  // of the rate at which an offset comes in, times t₀
     const ShapeControl control(problem(), gain);
     ReferenceMotion reference(problem(), time_step());
-    ChainSimulation cloth(plan_, problem().chain.initial, launch(*this));
+    ChainSimulation cloth(plan_, problem().cloth().initial, launch(*this));
     Points force = Points::Zero(2, plan_.particles);
     std::vector<FlightState> starts;
     std::size_t sample = 0;
@@ -272,7 +269,7 @@ class NativeBackend final : public Backend {
     for (Index lane = 0; lane < count; ++lane) {
       const Eigen::Map<const Points> final(finals.data() + lane * size, 2, target.cols());
       Arrival& arrival = arrivals[static_cast<std::size_t>(lane)];
-      if (is_torn(problem().chain, final)) {
+      if (is_torn(cloth(), final)) {
         arrival.error = std::numeric_limits<double>::infinity();
         continue;
       }
@@ -308,8 +305,8 @@ StableStep stable_step(const Chain& chain) {
   const double shortest = chain.rest_length.minCoeff();
   const double per_hinge =
       16 / (chain.hinge_length.minCoeff() * shortest * shortest * chain.particle_mass);
-  const double squared_frequency = per_hinge * chain.cloth.hinge_stiffness;
-  const double rate = per_hinge * chain.cloth.hinge_damping;
+  const double squared_frequency = per_hinge * chain.material.hinge_stiffness;
+  const double rate = per_hinge * chain.material.hinge_damping;
   // h = 4/(c + √(c² + 4ω²)), the root of h²ω² + 2hc = 4.
   return {4 / (rate + std::sqrt(rate * rate + 4 * squared_frequency)),
           rate * rate > 4 * squared_frequency ? "/cloth/hinge_damping" : "/cloth/hinge_stiffness"};
@@ -317,16 +314,16 @@ StableStep stable_step(const Chain& chain) {
 
 }  // namespace
 
-std::unique_ptr<Backend> make_backend(const Problem& problem, std::optional<double> time_step) {
+std::unique_ptr<Backend> make_backend(const Problem& problem) {
   // A quarter of the stable step leaves room for hinges that stiffen where segments are compressed:
   // at half of it, one of the 64 scenes of the library's family diverges at some gains, here none.
   // 1/800 of the flight keeps E(α) within 5e-4 of the cloth's length on the reference scenes.
   constexpr double safety = 0.25;
   constexpr double default_steps = 800;
 
-  const StableStep stable = stable_step(problem.chain);
-  double h = time_step.value_or(problem.arrival_time / default_steps);
-  const char* field = time_step ? "/time_step" : "/arrival_time";
+  const StableStep stable = stable_step(problem.chain());
+  double h = problem.time_step.value_or(problem.arrival_time / default_steps);
+  const char* field = problem.time_step ? "/time_step" : "/arrival_time";
   if (!(h > 0)) throw InputError(fmt::format("/time_step: {} is not > 0", h));
   if (!(h <= safety * stable.h)) {
     h = safety * stable.h;

@@ -8,18 +8,9 @@ namespace nuno {
 
 /// A problem with exactly these particles; nothing pulls or brakes it unless `cloth` says so.
 inline Problem problem_of(const Points& positions, double gravity = 0,
-                          const Cloth& cloth = {.air_drag = 0, .hinge_stiffness = 0}) {
-  const Index n = positions.cols();
+                          const ChainMaterial& cloth = {.air_drag = 0, .hinge_stiffness = 0}) {
   Problem problem;
-  problem.chain.initial = positions;
-  problem.chain.rest_length = segment_lengths(positions);
-  problem.chain.hinge_length =
-      0.5 * (problem.chain.rest_length.head(n - 2) + problem.chain.rest_length.tail(n - 2));
-  problem.chain.length = problem.chain.rest_length.sum();
-  problem.chain.particle_mass = cloth.mass / static_cast<double>(n);
-  problem.chain.particle_drag = cloth.air_drag / static_cast<double>(n);
-  problem.chain.gravity = gravity;
-  problem.chain.cloth = cloth;
+  problem.form = make_chain(positions, cloth, gravity);
   problem.target = positions;
   problem.arrival_time = 1;
   return problem;

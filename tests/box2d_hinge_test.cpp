@@ -38,20 +38,20 @@ Points straightening_forces(const Points& x) {
 /// The moment that a lone hinge of this cloth has: from the velocities that it gives to three free
 /// particles within one step, which takes half a kick. What the particles of an inextensible chain
 /// do under a unit moment is the part of its forces that stretches nothing.
-double measured_moment(const Points& shape, const Points& velocities, const Cloth& cloth,
+double measured_moment(const Points& shape, const Points& velocities, const ChainMaterial& cloth,
                        Hinge form) {
-  const auto backend = box2d::make_backend(
-      problem_of(shape, 0, cloth), {.time_step = 1e-5, .hinge = form, .velocity_iterations = 200});
-  const auto chain = backend->start(backend->problem().chain.initial, velocities);
+  const auto backend = box2d::make_backend_with({.hinge = form, .velocity_iterations = 200},
+                                                with_time_step(problem_of(shape, 0, cloth), 1e-5));
+  const auto chain = backend->start(backend->problem().chain().initial, velocities);
   chain->step(Points::Zero(2, 3));
-  const double mass = backend->problem().chain.particle_mass;
+  const double mass = backend->problem().chain().particle_mass;
   const Points response = without_stretching(shape, straightening_forces(shape)) / mass;
   const Points gained = chain->velocities() - velocities;
   return gained.cwiseProduct(response).sum() / response.squaredNorm() / (backend->time_step() / 2);
 }
 
 TEST(Box2dHinge, TheWeldHasTheMomentOfItsLawUpTo2AndAHalfRadians) {
-  const Cloth cloth = {.air_drag = 0, .hinge_stiffness = 0.01};
+  const ChainMaterial cloth = {.air_drag = 0, .hinge_stiffness = 0.01};
   for (const double angle : {-2.5, -1.0, 0.01, 0.3, 1.0, 1.7, 2.0, 2.5}) {
     const double law = cloth.hinge_stiffness * angle / 0.4;
     const double moment = measured_moment(bent(angle), Points::Zero(2, 3), cloth, Hinge::soft_weld);
@@ -61,7 +61,7 @@ TEST(Box2dHinge, TheWeldHasTheMomentOfItsLawUpTo2AndAHalfRadians) {
 }
 
 TEST(Box2dHinge, TheSpringPairHasTheMomentOfItsGeometryToTheEndOfItsRange) {
-  const Cloth cloth = {.air_drag = 0, .hinge_stiffness = 0.01};
+  const ChainMaterial cloth = {.air_drag = 0, .hinge_stiffness = 0.01};
   for (const double angle : {-1.69, -1.0, 0.1, 0.3, 1.0, 1.5, 1.69}) {
     const double phi = angle / 2;
     const double law = cloth.hinge_stiffness * angle / 0.4;
@@ -76,7 +76,7 @@ TEST(Box2dHinge, TheSpringPairHasTheMomentOfItsGeometryToTheEndOfItsRange) {
 }
 
 TEST(Box2dHinge, ADashpotBrakesTheTurning) {
-  const Cloth cloth = {.air_drag = 0, .hinge_stiffness = 0, .hinge_damping = 1e-2};
+  const ChainMaterial cloth = {.air_drag = 0, .hinge_stiffness = 0, .hinge_damping = 1e-2};
   for (const double angle : {0.0, 1.0, -1.5}) {
     const Points shape = bent(angle);
     const Points turning = without_stretching(shape, -straightening_forces(shape)) * 0.005;
@@ -95,16 +95,16 @@ TEST(Box2dHinge, ADashpotBrakesTheTurning) {
 TEST(Box2dHinge, ASmallBendingSwingsAtItsFrequency) {
   // Three particles in the motion (1, −2, 1)·s: θ = 6s/ℓ, energies ½·6m·ṡ² and ½·k·36s²/ℓ².
   const double length = 0.5;
-  const Cloth cloth = {.air_drag = 0, .hinge_stiffness = 1e-3};
+  const ChainMaterial cloth = {.air_drag = 0, .hinge_stiffness = 1e-3};
   Problem problem = problem_of(bent(0.02, length, length), 0, cloth);
   const double stiffness = cloth.hinge_stiffness / length;
   const double frequency =
-      std::sqrt(stiffness * 6 / (problem.chain.particle_mass * length * length));
+      std::sqrt(stiffness * 6 / (problem.chain().particle_mass * length * length));
   problem.arrival_time = 10 * 2 * pi / frequency;
   for (const Hinge form : {Hinge::soft_weld, Hinge::spring_pair}) {
     const auto backend =
-        box2d::make_backend(problem, {.time_step = 0.02 / frequency, .hinge = form});
-    const auto chain = backend->start(backend->problem().chain.initial, Points::Zero(2, 3));
+        box2d::make_backend_with({.hinge = form}, with_time_step(problem, 0.02 / frequency));
+    const auto chain = backend->start(backend->problem().chain().initial, Points::Zero(2, 3));
     double crossings = 0, before = 0.02, last = 0;
     for (Index n = 0; n < backend->steps(); ++n) {
       chain->step(Points::Zero(2, 3));
@@ -124,11 +124,11 @@ TEST(Box2dHinge, ASmallBendingSwingsAtItsFrequency) {
 }
 
 TEST(Box2dHinge, AHingeThatTurnsThroughHalfATurnIsPulledOnTheOtherWay) {
-  const Cloth cloth = {.air_drag = 0, .hinge_stiffness = 0.01};
+  const ChainMaterial cloth = {.air_drag = 0, .hinge_stiffness = 0.01};
   const Points shape = bent(3.1, 0.5, 0.5);
   const Points turning = without_stretching(shape, -straightening_forces(shape)) * 0.5;
-  const auto backend = box2d::make_backend(problem_of(shape, 0, cloth), {.time_step = 1e-4});
-  const auto chain = backend->start(backend->problem().chain.initial, turning);
+  const auto backend = box2d::make_backend(with_time_step(problem_of(shape, 0, cloth), 1e-4));
+  const auto chain = backend->start(backend->problem().chain().initial, turning);
   const auto rate = [&] {
     return -straightening_forces(chain->positions()).cwiseProduct(chain->velocities()).sum();
   };
@@ -148,9 +148,9 @@ TEST(Box2dHinge, TheWeldSurvivesASharpFold) {
 
 TEST(Box2dHinge, TheSpringPairRefusesAShapeBeyondItsRange) {
   const Problem problem = problem_of(bent(1.75));
-  EXPECT_NO_THROW(box2d::make_backend(problem, {.time_step = {}, .hinge = Hinge::soft_weld}));
+  EXPECT_NO_THROW(box2d::make_backend_with({.hinge = Hinge::soft_weld}, problem));
   try {
-    box2d::make_backend(problem, {.time_step = {}, .hinge = Hinge::spring_pair});
+    box2d::make_backend_with({.hinge = Hinge::spring_pair}, problem);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),
@@ -163,8 +163,8 @@ TEST(Box2dHinge, AFlightThatLeavesTheSpringPairsRangeHasDiverged) {
   const Points shape = bent(1.6, 0.5, 0.5);
   const Points turning = without_stretching(shape, -straightening_forces(shape)) * 0.5;
   for (const Hinge form : {Hinge::soft_weld, Hinge::spring_pair}) {
-    const auto backend = box2d::make_backend(problem_of(shape), {.time_step = {}, .hinge = form});
-    const auto chain = backend->start(backend->problem().chain.initial, turning);
+    const auto backend = box2d::make_backend_with({.hinge = form}, problem_of(shape));
+    const auto chain = backend->start(backend->problem().chain().initial, turning);
     while (chain->positions().allFinite() && hinge_angle(chain->positions()) < 1.8) {
       chain->step(Points::Zero(2, 3));
     }

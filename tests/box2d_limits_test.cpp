@@ -24,7 +24,7 @@ TEST(Box2dLimits, ABadForceEndsTheFlightForGood) {
   const auto backend = box2d::make_backend(problem_of(bent(1)));
   for (const double bad : {nan, infinity, -infinity, 1e300, 1e38, 1e30}) {
     for (Index place = 0; place < 6; ++place) {
-      const auto chain = backend->start(backend->problem().chain.initial, Points::Zero(2, 3));
+      const auto chain = backend->start(backend->problem().chain().initial, Points::Zero(2, 3));
       chain->step(Points::Zero(2, 3));
       Points forces = Points::Zero(2, 3);
       forces(place) = bad;
@@ -42,7 +42,7 @@ TEST(Box2dLimits, ABadLaunchNeverReachesBox2d) {
   for (const double bad : {nan, infinity, -infinity, 1e300, 1e38, 1e6}) {
     Points launch = Points::Zero(2, 3);
     launch(1, 1) = bad;
-    const auto chain = backend->start(backend->problem().chain.initial, launch);
+    const auto chain = backend->start(backend->problem().chain().initial, launch);
     chain->step(Points::Zero(2, 3));
     EXPECT_TRUE(chain->positions().array().isNaN().all()) << bad;
     EXPECT_TRUE(chain->failure().starts_with("a rod is launched faster than Box2D moves it"));
@@ -50,15 +50,15 @@ TEST(Box2dLimits, ABadLaunchNeverReachesBox2d) {
 }
 
 TEST(Box2dLimits, AMotionThatBox2dWouldClampHasDiverged) {
-  const auto backend = box2d::make_backend(problem_of(bent(1)), {.time_step = 1e-3});
+  const auto backend = box2d::make_backend(with_time_step(problem_of(bent(1)), 1e-3));
   const auto speed = [&](double rods_per_step) {
     return rods_per_step * 0.4 / backend->time_step();
   };
   const Points none = Points::Zero(2, 3);
   const auto allowed =
-      backend->start(backend->problem().chain.initial, Vector2d(speed(1.85), 0).replicate(1, 3));
+      backend->start(backend->problem().chain().initial, Vector2d(speed(1.85), 0).replicate(1, 3));
   const auto clamped =
-      backend->start(backend->problem().chain.initial, Vector2d(speed(1.95), 0).replicate(1, 3));
+      backend->start(backend->problem().chain().initial, Vector2d(speed(1.95), 0).replicate(1, 3));
   allowed->step(none);
   clamped->step(none);
   EXPECT_TRUE(allowed->positions().allFinite());
@@ -73,37 +73,37 @@ TEST(Box2dLimits, AMotionThatBox2dWouldClampHasDiverged) {
 }
 
 TEST(Box2dLimits, ExtremeScenesAreRefusedOrFlyOrDivergeButNeverAbort) {
-  Scene plain;
+  ChainScene plain;
   plain.arrival_time = 1;
   plain.particles = 5;
   plain.initial = Points{{0.0, 1.0, 1.5}, {0.0, 0.0, 0.5}};
   plain.target = Points{{3.0, 3.5}, {1.0, 2.0}};
-  const std::vector<void (*)(Scene&, double)> changes = {
-      [](Scene& s, double x) { s.arrival_time = x; },
-      [](Scene& s, double x) { s.gravity = x; },
-      [](Scene& s, double x) { s.cloth.mass = x; },
-      [](Scene& s, double x) { s.cloth.air_drag = x; },
-      [](Scene& s, double x) { s.cloth.hinge_stiffness = x; },
-      [](Scene& s, double x) { s.cloth.hinge_damping = x; },
-      [](Scene& s, double x) { s.initial *= x; },
-      [](Scene& s, double x) { s.target *= x; },
-      [](Scene& s, double x) { s.initial *= x, s.target *= x; },
+  const std::vector<void (*)(ChainScene&, double)> changes = {
+      [](ChainScene& s, double x) { s.arrival_time = x; },
+      [](ChainScene& s, double x) { s.gravity = x; },
+      [](ChainScene& s, double x) { s.cloth.mass = x; },
+      [](ChainScene& s, double x) { s.cloth.air_drag = x; },
+      [](ChainScene& s, double x) { s.cloth.hinge_stiffness = x; },
+      [](ChainScene& s, double x) { s.cloth.hinge_damping = x; },
+      [](ChainScene& s, double x) { s.initial *= x; },
+      [](ChainScene& s, double x) { s.target *= x; },
+      [](ChainScene& s, double x) { s.initial *= x, s.target *= x; },
   };
   for (const auto& change : changes) {
     for (const double value : {1e-300, 1e-160, 1e-80, 1e-30, 1e-8, 1e8, 1e30, 1e80, 1e160, 1e300}) {
       for (const Hinge form : {Hinge::soft_weld, Hinge::spring_pair}) {
-        Scene scene = plain;
+        ChainScene scene = plain;
         change(scene, value);
         try {
           const Problem problem = make_problem(scene);
-          const auto backend = box2d::make_backend(problem, {.time_step = {}, .hinge = form});
+          const auto backend = box2d::make_backend_with({.hinge = form}, problem);
           EXPECT_GT(backend->steps(), 0);
           const auto chain = backend->start(
-              backend->problem().chain.initial,
-              ballistic_launch(problem.chain.initial, problem.target, problem.arrival_time,
-                               problem.chain.gravity, problem.chain.drag_rate()));
+              backend->problem().chain().initial,
+              ballistic_launch(problem.chain().initial, problem.target, problem.arrival_time,
+                               problem.chain().gravity, problem.chain().drag_rate));
           for (int n = 0; n < 20; ++n) {
-            chain->step(Points::Constant(2, 5, problem.chain.particle_mass));
+            chain->step(Points::Constant(2, 5, problem.chain().particle_mass));
           }
           EXPECT_TRUE(chain->positions().allFinite() || chain->positions().array().isNaN().all());
         } catch (const InputError& error) {
@@ -117,7 +117,7 @@ TEST(Box2dLimits, ExtremeScenesAreRefusedOrFlyOrDivergeButNeverAbort) {
 TEST(Box2dLimits, AWishForTooManyStepsIsRefusedByName) {
   const auto complaint = [](double wish) -> std::string {
     try {
-      box2d::make_backend(problem_of(bent(1)), {.time_step = wish});
+      box2d::make_backend(with_time_step(problem_of(bent(1)), wish));
     } catch (const InputError& error) {
       return error.what();
     }
@@ -131,17 +131,17 @@ TEST(Box2dLimits, AWishForTooManyStepsIsRefusedByName) {
 }
 
 TEST(Box2dLimits, AWishForTooLongAStepIsCutToWhatTheClothNeeds) {
-  const Cloth stiff = {.air_drag = 0, .hinge_stiffness = 1};
-  const auto backend = box2d::make_backend(problem_of(bent(0.1), 0, stiff), {.time_step = 1});
-  const double per_hinge = 16 / (0.4 * 0.3 * 0.3 * backend->problem().chain.particle_mass);
+  const ChainMaterial stiff = {.air_drag = 0, .hinge_stiffness = 1};
+  const auto backend = box2d::make_backend(with_time_step(problem_of(bent(0.1), 0, stiff), 1));
+  const double per_hinge = 16 / (0.4 * 0.3 * 0.3 * backend->problem().chain().particle_mass);
   EXPECT_LE(per_hinge * std::pow(backend->time_step(), 2), 0.5);
   const Rollout flight = rollout(*backend, 0);
   EXPECT_EQ(flight.status, RolloutStatus::ok);
 
   const auto dragged = box2d::make_backend(
-      problem_of(bent(1), 9.8, {.air_drag = 10, .hinge_stiffness = 0}), {.time_step = 1});
+      with_time_step(problem_of(bent(1), 9.8, {.air_drag = 10, .hinge_stiffness = 0}), 1));
   EXPECT_LE(dragged->time_step() * 100, 0.25);
-  const auto fast = box2d::make_backend(problem_of(bent(1), 1000), {.time_step = 1});
+  const auto fast = box2d::make_backend(with_time_step(problem_of(bent(1), 1000), 1));
   EXPECT_LE(fast->time_step() * 1000, 0.4);
 }
 

@@ -23,13 +23,13 @@ constexpr double single_rounding = 6e-8;
 // across the chain, a force on one particle moves that particle and no other.
 TEST(Box2dRods, APushAcrossAStraightChainMovesOneParticleAlone) {
   const Points straight{{0.0, 1.0, 1.5, 3.0, 3.2}, {0.0, 0.0, 0.0, 0.0, 0.0}};
-  const auto backend =
-      box2d::make_backend(problem_of(straight), {.time_step = 1e-3, .velocity_iterations = 100});
-  const double mass = backend->problem().chain.particle_mass;
+  const auto backend = box2d::make_backend_with({.velocity_iterations = 100},
+                                                with_time_step(problem_of(straight), 1e-3));
+  const double mass = backend->problem().chain().particle_mass;
   const double force = 1e-3;
   const double speed = force / mass * backend->time_step() / 2;  // the first step: half a kick
   for (Index pushed = 0; pushed < 5; ++pushed) {
-    const auto chain = backend->start(backend->problem().chain.initial, Points::Zero(2, 5));
+    const auto chain = backend->start(backend->problem().chain().initial, Points::Zero(2, 5));
     Points forces = Points::Zero(2, 5);
     forces(1, pushed) = force;
     chain->step(forces);
@@ -43,9 +43,9 @@ TEST(Box2dRods, APushAcrossAStraightChainMovesOneParticleAlone) {
 
 TEST(Box2dRods, APullAlongAStraightChainMovesAllParticlesAlike) {
   const Points straight{{0.0, 1.0, 1.5, 3.0, 3.2}, {0.0, 0.0, 0.0, 0.0, 0.0}};
-  const auto backend =
-      box2d::make_backend(problem_of(straight), {.time_step = 1e-3, .velocity_iterations = 200});
-  const auto chain = backend->start(backend->problem().chain.initial, Points::Zero(2, 5));
+  const auto backend = box2d::make_backend_with({.velocity_iterations = 200},
+                                                with_time_step(problem_of(straight), 1e-3));
+  const auto chain = backend->start(backend->problem().chain().initial, Points::Zero(2, 5));
   Points forces = Points::Zero(2, 5);
   forces(0, 4) = 1e-3;
   chain->step(forces);
@@ -59,12 +59,12 @@ TEST(Box2dRods, APullAlongAStraightChainMovesAllParticlesAlike) {
 TEST(Box2dRods, AnyForcesOnABentChainActAsOnPointMassesThatKeepTheirDistance) {
   const Points shape{{0.0, 1.0, 1.3, 0.9, 1.9}, {0.0, 0.2, 1.1, 1.5, 2.0}};
   const Points forces{{1.0, -2.0, 0.5, 3.0, -1.0}, {0.3, 1.0, -2.0, 0.7, 0.2}};
-  const auto backend =
-      box2d::make_backend(problem_of(shape), {.time_step = 1e-5, .velocity_iterations = 200});
-  const auto chain = backend->start(backend->problem().chain.initial, Points::Zero(2, 5));
+  const auto backend = box2d::make_backend_with({.velocity_iterations = 200},
+                                                with_time_step(problem_of(shape), 1e-5));
+  const auto chain = backend->start(backend->problem().chain().initial, Points::Zero(2, 5));
   chain->step(forces);
   const Points expected = without_stretching(shape, forces) /
-                          backend->problem().chain.particle_mass * (backend->time_step() / 2);
+                          backend->problem().chain().particle_mass * (backend->time_step() / 2);
   EXPECT_LT((chain->velocities() - expected).cwiseAbs().maxCoeff(),
             100 * single_rounding * expected.cwiseAbs().maxCoeff());
 }
@@ -72,8 +72,8 @@ TEST(Box2dRods, AnyForcesOnABentChainActAsOnPointMassesThatKeepTheirDistance) {
 TEST(Box2dRods, ALaunchThatStretchesLosesOnlyItsStretching) {
   const Points shape{{0.0, 1.0, 1.3, 0.9, 1.9}, {0.0, 0.2, 1.1, 1.5, 2.0}};
   const Points launch{{1.0, -2.0, 0.5, 3.0, -1.0}, {0.3, 1.0, -2.0, 0.7, 0.2}};
-  const auto backend = box2d::make_backend(problem_of(shape), {.time_step = 1e-6});
-  const auto chain = backend->start(backend->problem().chain.initial, launch);
+  const auto backend = box2d::make_backend(with_time_step(problem_of(shape), 1e-6));
+  const auto chain = backend->start(backend->problem().chain().initial, launch);
   EXPECT_EQ(chain->velocities(), launch);
   chain->step(Points::Zero(2, 5));
   // The rods turn by 1e-5 rad within the step.
@@ -88,7 +88,7 @@ TEST(Box2dFlight, AFreeClothFollowsTheDragRecurrenceStepByStep) {
   const auto backend = box2d::make_backend(problem);
   const DragRecurrence r = backend->drag_recurrence();
   const Vector2d launch(30, 12);
-  const auto chain = backend->start(backend->problem().chain.initial, launch.replicate(1, 4));
+  const auto chain = backend->start(backend->problem().chain().initial, launch.replicate(1, 4));
   Vector2d x(0, 0), v = launch;
   for (Index n = 0; n < backend->steps(); ++n) {
     chain->step(Points::Zero(2, 4));
@@ -97,7 +97,7 @@ TEST(Box2dFlight, AFreeClothFollowsTheDragRecurrenceStepByStep) {
     // Box2D rounds each kick of gravity, 2e-6 rods per step, to the last digit of a velocity of
     // 0.04: 1e-3 of it at worst and mostly the same way, so up to 1e-3 of the fall g·t²/2.
     const double t = static_cast<double>(n + 1) * r.h;
-    const Points moved = chain->positions() - problem.chain.initial;
+    const Points moved = chain->positions() - problem.chain().initial;
     ASSERT_LT((moved.colwise() - x).cwiseAbs().maxCoeff(), 2e-6 + 1e-3 * 4.9 * t * t)
         << "step " << n;
   }
@@ -107,18 +107,18 @@ TEST(Box2dFlight, AFreeClothFollowsTheDragRecurrenceStepByStep) {
 TEST(Box2dFlight, AClothDroppedFromRestFallsByGravity) {
   const Problem problem = problem_of(Points{{0.0, 0.3, 0.5, 0.6}, {0.0, 0.1, 0.4, 0.8}}, 9.8);
   const auto backend = box2d::make_backend(problem);
-  const auto chain = backend->start(problem.chain.initial, Points::Zero(2, 4));
+  const auto chain = backend->start(problem.chain().initial, Points::Zero(2, 4));
   for (Index n = 0; n < backend->steps(); ++n) chain->step(Points::Zero(2, 4));
-  const Vector2d fall = centroid(chain->positions()) - centroid(problem.chain.initial);
+  const Vector2d fall = centroid(chain->positions()) - centroid(problem.chain().initial);
   EXPECT_NEAR(fall.y(), -4.9, 1e-3 * 4.9);  // rounding as above; no drag, so no other error
   EXPECT_NEAR(fall.x(), 0, 1e-5);
 }
 
 TEST(Box2dFlight, DragAndGravityAreExactAtAnyStep) {
   const Problem problem = problem_of(bent(1), 9.8, {.air_drag = 0.3, .hinge_stiffness = 0});
-  const double rate = problem.chain.drag_rate();
+  const double rate = problem.chain().drag_rate;
   for (const double h : {1e-2, 1e-3, 1e-4}) {
-    const auto backend = box2d::make_backend(problem, {.time_step = h});
+    const auto backend = box2d::make_backend(with_time_step(problem, h));
     const DragRecurrence r = backend->drag_recurrence();
     EXPECT_NEAR(r.r, std::exp(-rate * r.h), 1e-15);
     EXPECT_NEAR(r.q, -std::expm1(-rate * r.h) / rate, 1e-15);
@@ -128,8 +128,8 @@ TEST(Box2dFlight, DragAndGravityAreExactAtAnyStep) {
 TEST(Box2dFlight, VelocitiesAreTheMeanOverTheLastStep) {
   const Points shape{{0.0, 1.0, 1.3, 0.9, 1.9}, {0.0, 0.2, 1.1, 1.5, 2.0}};
   const Points launch{{1.0, -2.0, 0.5, 3.0, -1.0}, {0.3, 1.0, -2.0, 0.7, 0.2}};
-  const auto backend = box2d::make_backend(problem_of(shape), {.time_step = 1e-3});
-  const auto chain = backend->start(backend->problem().chain.initial, launch);
+  const auto backend = box2d::make_backend(with_time_step(problem_of(shape), 1e-3));
+  const auto chain = backend->start(backend->problem().chain().initial, launch);
   for (int n = 0; n < 100; ++n) {
     const Points before = chain->positions();
     chain->step(Points::Zero(2, 5));
@@ -143,13 +143,13 @@ TEST(Box2dFlight, VelocitiesAreTheMeanOverTheLastStep) {
 TEST(Box2dFlight, SegmentsKeepTheirLength) {
   const Points shape{{0.0, 1.0, 1.3, 0.9, 1.9}, {0.0, 0.2, 1.1, 1.5, 2.0}};
   const Points launch{{1.0, -2.0, 0.5, 3.0, -1.0}, {0.3, 1.0, -2.0, 0.7, 0.2}};
-  const auto backend = box2d::make_backend(problem_of(shape), {.time_step = 1e-3});
-  const auto chain = backend->start(backend->problem().chain.initial, launch);
+  const auto backend = box2d::make_backend(with_time_step(problem_of(shape), 1e-3));
+  const auto chain = backend->start(backend->problem().chain().initial, launch);
   double worst = 0;
   for (Index n = 0; n < backend->steps(); ++n) {
     chain->step(Points::Zero(2, 5));
     const Vector strain =
-        segment_lengths(chain->positions()).cwiseQuotient(backend->problem().chain.rest_length);
+        segment_lengths(chain->positions()).cwiseQuotient(backend->problem().chain().rest_length);
     worst = std::max(worst, (strain.array() - 1).abs().maxCoeff());
   }
   // Rods turn by up to 5e-3 rad per step: half the square of it, 1e-5, at the first step, which
@@ -165,8 +165,8 @@ TEST(Box2dFlight, ALongLivelyChainStaysTogetherAndKeepsItsEnergy) {
     shape.col(i) = Vector2d(std::sin(3 * s), 1 - std::cos(3 * s)) / 3;
     launch.col(i) = Vector2d(2 * std::cos(5 * s), 2 * std::sin(7 * s));
   }
-  const auto backend =
-      box2d::make_backend(problem_of(shape), {.time_step = 1.0 / 2000, .velocity_iterations = 16});
+  const auto backend = box2d::make_backend_with({.velocity_iterations = 16},
+                                                with_time_step(problem_of(shape), 1.0 / 2000));
   const auto chain = backend->start(shape, launch);
   double first = 0;
   for (Index n = 0; n < backend->steps(); ++n) {
@@ -174,7 +174,7 @@ TEST(Box2dFlight, ALongLivelyChainStaysTogetherAndKeepsItsEnergy) {
     if (n == 10) first = chain->velocities().squaredNorm();
   }
   const Vector ratio =
-      segment_lengths(chain->positions()).cwiseQuotient(backend->problem().chain.rest_length);
+      segment_lengths(chain->positions()).cwiseQuotient(backend->problem().chain().rest_length);
   // 6e-5, and 3e-4 without the position solver's corrections.
   EXPECT_LT((ratio.array() - 1).abs().maxCoeff(), 1.5e-4);
   // 4e-6; Box2D's own step loses 6 %, a weight w of 0.1 loses 5e-4.
@@ -187,8 +187,9 @@ TEST(Box2dFlight, HalfTheStepLeavesAQuarterOfTheError) {
   const Points launch{{1.0, -2.0, 0.5, 3.0, -1.0}, {0.3, 1.0, -2.0, 0.7, 0.2}};
   Problem problem = problem_of(shape, 0, {.air_drag = 0.1, .hinge_stiffness = 0.02});
   const auto arrive = [&](double h) {
-    const auto backend = box2d::make_backend(problem, {.time_step = h, .velocity_iterations = 60});
-    const auto chain = backend->start(backend->problem().chain.initial, launch);
+    const auto backend =
+        box2d::make_backend_with({.velocity_iterations = 60}, with_time_step(problem, h));
+    const auto chain = backend->start(backend->problem().chain().initial, launch);
     for (Index n = 0; n < backend->steps(); ++n) chain->step(Points::Zero(2, 5));
     return chain->positions();
   };
@@ -203,9 +204,9 @@ TEST(Box2dFlight, HalfTheStepLeavesAQuarterOfTheError) {
 TEST(Box2dFlight, ASwingingChainKeepsItsEnergy) {
   const Points shape{{0.0, 1.0, 1.3, 0.9, 1.9}, {0.0, 0.2, 1.1, 1.5, 2.0}};
   const Points launch{{1.0, -2.0, 0.5, 3.0, -1.0}, {0.3, 1.0, -2.0, 0.7, 0.2}};
-  const auto backend =
-      box2d::make_backend(problem_of(shape), {.time_step = 1e-3, .velocity_iterations = 60});
-  const auto chain = backend->start(backend->problem().chain.initial, launch);
+  const auto backend = box2d::make_backend_with({.velocity_iterations = 60},
+                                                with_time_step(problem_of(shape), 1e-3));
+  const auto chain = backend->start(backend->problem().chain().initial, launch);
   for (int n = 0; n < 10; ++n) chain->step(Points::Zero(2, 5));
   const double first = chain->velocities().squaredNorm();
   for (Index n = 10; n < backend->steps(); ++n) chain->step(Points::Zero(2, 5));

@@ -21,21 +21,21 @@ namespace {
 using std::numbers::pi;
 
 /// Well-conditioned throws of the library: a gentle one, and two of the family.
-std::vector<Scene> calm_scenes() {
-  std::vector<Scene> scenes = {scene_library::straight_to_s(), scene_library::family_member(0),
-                               scene_library::family_member(4)};
-  for (Scene& scene : scenes) scene.launch = Launch::inextensible;
+std::vector<ChainScene> calm_scenes() {
+  std::vector<ChainScene> scenes = {scene_library::straight_to_s(), scene_library::family_member(0),
+                                    scene_library::family_member(4)};
+  for (ChainScene& scene : scenes) scene.launch = Launch::inextensible;
   return scenes;
 }
 
 /// A gain below every calm scene's best one [N/m].
 double calm_gain(const Problem& problem) {
-  return problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  return problem.chain().particle_mass / (problem.arrival_time * problem.arrival_time);
 }
 
 class EveryEngine : public testing::TestWithParam<Engine> {
  protected:
-  static std::unique_ptr<Backend> make(const Scene& scene,
+  static std::unique_ptr<Backend> make(const ChainScene& scene,
                                        std::optional<double> time_step = std::nullopt) {
     return GetParam().make(make_problem(scene), time_step);
   }
@@ -43,7 +43,7 @@ class EveryEngine : public testing::TestWithParam<Engine> {
 };
 
 TEST_P(EveryEngine, FliesAFreeClothByItsOwnRecurrence) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.cloth.air_drag = 0.2;
   const auto backend = make(scene);
   const DragRecurrence r = backend->drag_recurrence();
@@ -56,13 +56,13 @@ TEST_P(EveryEngine, FliesAFreeClothByItsOwnRecurrence) {
     v *= n == 0 ? r.r1 : r.r;
     v.y() -= (n == 0 ? r.q1 : r.q) * scene.gravity;
     x += r.h * v;
-    const Points moved = cloth->positions() - backend->problem().chain.initial;
+    const Points moved = cloth->positions() - backend->problem().chain().initial;
     ASSERT_LT((moved.colwise() - x).colwise().norm().maxCoeff(), rounding()) << "step " << n;
   }
 }
 
 TEST_P(EveryEngine, BringsTheCentroidHomeAtEveryGain) {
-  for (const Scene& scene : calm_scenes()) {
+  for (const ChainScene& scene : calm_scenes()) {
     const auto backend = make(scene);
     for (const double times : {0.0, 1.0, 10.0, 100.0}) {
       const Rollout flight = rollout(*backend, times * calm_gain(backend->problem()));
@@ -72,7 +72,7 @@ TEST_P(EveryEngine, BringsTheCentroidHomeAtEveryGain) {
 }
 
 TEST_P(EveryEngine, KeepsAWholeNumberOfStepsUntilArrival) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.arrival_time = 0.777;
   for (const double wish : {1e-3, 3.3e-4, 1e-4}) {
     const auto backend = make(scene, wish);
@@ -106,13 +106,13 @@ TEST_P(EveryEngine, KnowsTheErrorsOfManyGainsAtOnce) {
 }
 
 TEST_P(EveryEngine, SpinsAStraightClothWithoutBendingIt) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.gravity = 0;
   scene.cloth.air_drag = 0;
   scene.cloth.stretch_stiffness = 2e5;
   scene.arrival_time = 0.5;
   const auto backend = make(scene);
-  const Points& initial = backend->problem().chain.initial;
+  const Points& initial = backend->problem().chain().initial;
   const double rate = 4;  // rad/s
   Points velocity = Points::Zero(2, 32);
   velocity.row(1) = rate * shape_of(initial).row(0);
@@ -129,7 +129,7 @@ TEST_P(EveryEngine, SpinsAStraightClothWithoutBendingIt) {
 }
 
 TEST_P(EveryEngine, KeepsAngularMomentumInFreeFlight) {
-  Scene scene = scene_library::family_member(4);
+  ChainScene scene = scene_library::family_member(4);
   scene.cloth.air_drag = 0;
   const auto backend = make(scene);
   const auto cloth = backend->start(launch(*backend));
@@ -171,7 +171,7 @@ TEST_P(EveryEngine, StartsFromEveryShapeThatItAccepts) {
   for (const Points& initial :
        {Points{{0.0, 1.0, 0.01}, {0.0, 0.0, 0.02}},
         Points{{0.0, 0.5, 0.5 + 0.5 * std::cos(back)}, {0.0, 0.0, 0.5 * std::sin(back)}}}) {
-    Scene scene = scene_library::straight_to_s();
+    ChainScene scene = scene_library::straight_to_s();
     scene.initial = initial;
     try {
       const auto backend = make(scene);
@@ -187,7 +187,7 @@ TEST_P(EveryEngine, KeepsFramesAtTheirTimes) {
   const Rollout flight = rollout(*backend, 0, {.frames_per_second = 24});
   ASSERT_EQ(flight.frame_times.size(), 25u);
   ASSERT_EQ(flight.frame_positions.size(), 25u);
-  EXPECT_EQ(flight.frame_positions.front(), backend->problem().chain.initial);
+  EXPECT_EQ(flight.frame_positions.front(), backend->problem().chain().initial);
   EXPECT_EQ(flight.frame_positions.back(), flight.final);
   for (std::size_t i = 0; i < 25; ++i) {
     EXPECT_NEAR(flight.frame_times[i], static_cast<double>(i) / 24, 1e-12);
@@ -196,7 +196,7 @@ TEST_P(EveryEngine, KeepsFramesAtTheirTimes) {
 
 // ---- symmetries: a changed scene has the correspondingly changed answer ----------------------
 
-Points final_shape(const Engine& engine, const Scene& scene, double gain) {
+Points final_shape(const Engine& engine, const ChainScene& scene, double gain) {
   return rollout(*engine.make(make_problem(scene), std::nullopt), gain).final;
 }
 
@@ -204,9 +204,9 @@ Points final_shape(const Engine& engine, const Scene& scene, double gain) {
 constexpr double calm_growth = 10;
 
 TEST_P(EveryEngine, IsBlindToWhereTheSceneLies) {
-  for (const Scene& scene : calm_scenes()) {
+  for (const ChainScene& scene : calm_scenes()) {
     const double gain = calm_gain(make_problem(scene));
-    Scene moved = scene;
+    ChainScene moved = scene;
     const Eigen::Vector2d offset(2, -3);
     moved.initial.colwise() += offset;
     moved.target.colwise() += offset;
@@ -217,9 +217,9 @@ TEST_P(EveryEngine, IsBlindToWhereTheSceneLies) {
 }
 
 TEST_P(EveryEngine, MirrorsItsAnswerWithTheScene) {
-  for (const Scene& scene : calm_scenes()) {
+  for (const ChainScene& scene : calm_scenes()) {
     const double gain = calm_gain(make_problem(scene));
-    Scene mirrored = scene;
+    ChainScene mirrored = scene;
     mirrored.initial.row(0) *= -1;
     mirrored.target.row(0) *= -1;
     Points answer = final_shape(GetParam(), mirrored, gain);
@@ -231,11 +231,11 @@ TEST_P(EveryEngine, MirrorsItsAnswerWithTheScene) {
 }
 
 TEST_P(EveryEngine, TurnsItsAnswerWithASceneWithoutGravity) {
-  for (Scene scene : calm_scenes()) {
+  for (ChainScene scene : calm_scenes()) {
     scene.gravity = 0;
     const double gain = calm_gain(make_problem(scene));
     const Eigen::Matrix2d turn = Eigen::Rotation2D<double>(1.234).toRotationMatrix();
-    Scene turned = scene;
+    ChainScene turned = scene;
     turned.initial = turn * scene.initial;
     turned.target = turn * scene.target;
     const Points difference = turn.transpose() * final_shape(GetParam(), turned, gain) -
@@ -245,9 +245,9 @@ TEST_P(EveryEngine, TurnsItsAnswerWithASceneWithoutGravity) {
 }
 
 TEST_P(EveryEngine, ReversesItsAnswerWithTheOrderOfParticles) {
-  for (const Scene& scene : calm_scenes()) {
+  for (const ChainScene& scene : calm_scenes()) {
     const double gain = calm_gain(make_problem(scene));
-    Scene reversed = scene;
+    ChainScene reversed = scene;
     reversed.initial = scene.initial.rowwise().reverse().eval();
     reversed.target = scene.target.rowwise().reverse().eval();
     const Points answer = final_shape(GetParam(), reversed, gain).rowwise().reverse();
@@ -262,9 +262,9 @@ TEST_P(EveryEngine, ReversesItsAnswerWithTheOrderOfParticles) {
 TEST_P(EveryEngine, ScalesItsAnswerWithLengthTimeAndMass) {
   // By powers of two, so that a double rounds alike.
   const double length = 4, time = 0.5, mass = 8;
-  for (const Scene& scene : calm_scenes()) {
+  for (const ChainScene& scene : calm_scenes()) {
     const double gain = calm_gain(make_problem(scene));
-    Scene scaled = scene;
+    ChainScene scaled = scene;
     scaled.initial *= length;
     scaled.target *= length;
     scaled.arrival_time *= time;

@@ -20,15 +20,15 @@ namespace {
 
 using std::numbers::pi;
 
-Scene calm_throw() {
-  Scene scene = scene_library::straight_to_s();
+ChainScene calm_throw() {
+  ChainScene scene = scene_library::straight_to_s();
   scene.launch = Launch::inextensible;
   return scene;
 }
 
 /// Mean gap of two end shapes over L, centroids aligned.
 double gap(const Problem& problem, const Points& a, const Points& b) {
-  return shape_difference(a, b).mean / problem.chain.length;
+  return shape_difference(a, b).mean / problem.chain().size;
 }
 
 double median(std::vector<double> values) {
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Engines, EveryEngine,
 TEST_P(EveryEngine, SpendsTheEnergyThatItIsGiven) {
   // Kinetic energy about the centroid and stored energy at the end = those at the start + work of
   // control − what drag and the hinges' dashpots took.
-  Scene scene = calm_throw();
+  ChainScene scene = calm_throw();
   scene.gravity = 0;
   scene.cloth.hinge_stiffness = 2e-3;
   scene.cloth.hinge_damping = 2e-6;
@@ -65,16 +65,16 @@ TEST_P(EveryEngine, SpendsTheEnergyThatItIsGiven) {
   scene.cloth.stretch_damping = 0;
   const Problem problem = make_problem(scene);
   const auto backend = GetParam().make(problem, 5e-4);
-  const Chain& chain = problem.chain;
+  const Chain& chain = problem.chain();
   const double h = backend->time_step(), m = chain.particle_mass;
   const Points target = shape_of(problem.target);
   const auto cloth = backend->start(launch(*backend));
   const auto stored = [&](const Points& x) {
     const Vector angles = turning_angles(x);
     const Vector stretch = segment_lengths(x) - chain.rest_length;
-    return 0.5 * chain.cloth.hinge_stiffness *
+    return 0.5 * chain.material.hinge_stiffness *
                (angles.array().square() / chain.hinge_length.array()).sum() +
-           0.5 * chain.cloth.stretch_stiffness *
+           0.5 * chain.material.stretch_stiffness *
                (stretch.array().square() / chain.rest_length.array()).sum();
   };
   Points forces(2, chain.particles());
@@ -98,8 +98,8 @@ TEST_P(EveryEngine, SpendsTheEnergyThatItIsGiven) {
     const Points moved = x_after - x;
     const Vector turned = turning_angles(x_after) - turning_angles(x);
     const double control = middle_forces.cwiseProduct(moved).sum();
-    const double drag = chain.particle_drag * shape_of(v_after).squaredNorm() * h;
-    const double dashpots = chain.cloth.hinge_damping *
+    const double drag = chain.particle_mass * chain.drag_rate * shape_of(v_after).squaredNorm() * h;
+    const double dashpots = chain.material.hinge_damping *
                             (turned.array().square() / chain.hinge_length.array()).sum() / h;
     put_in += control - drag - dashpots;
     by_control += control;
@@ -122,7 +122,7 @@ TEST_P(EveryEngine, BendsInTheFirstModeOfAFreeBeam) {
   // ω = (β₁L)²·√(EI/(M·L³)), β₁L = 4.730; the end particles' half segments count to the length.
   constexpr Index particles = 64;
   constexpr double b = 4.73004;
-  Scene scene;
+  ChainScene scene;
   scene.particles = particles;
   scene.arrival_time = 6;  // two periods
   scene.gravity = 0;
@@ -171,12 +171,12 @@ TEST_P(EveryEngine, TendsToOneErrorAsTheSameClothHasMoreParticles) {
   const Index most = GetParam().sweeps_joints ? 64 : 256;
   double last = 0, last_change = 0;
   for (Index particles = 16; particles <= most; particles *= 2) {
-    Scene scene = calm_throw();
+    ChainScene scene = calm_throw();
     scene.particles = particles;
     scene.cloth.stretch_stiffness = 20000;
     const Problem problem = make_problem(scene);
     const auto backend = GetParam().make(problem, 5e-4);
-    const double error = rollout(*backend, 6 * problem.chain.particle_mass).error.mean;
+    const double error = rollout(*backend, 6 * problem.chain().particle_mass).error.mean;
     const double change = std::abs(error - last);
     if (last_change > 0) {
       // First order in 1/N at least: the end particles' half segments.
@@ -191,7 +191,7 @@ TEST_P(EveryEngine, TendsToOneErrorAsTheSameClothHasMoreParticles) {
 
 TEST(Gap, VanishesInTheInextensibleLimit) {
   // A strong gain on a soft cloth: the control force stretches it by 3 %, and rods do not stretch.
-  Scene scene = scene_library::family_member(43);
+  ChainScene scene = scene_library::family_member(43);
   std::vector<double> gaps, strains;
   for (const double stiffness : {200.0, 2000.0, 20000.0}) {
     scene.cloth.stretch_stiffness = stiffness;
@@ -210,12 +210,13 @@ TEST(Gap, VanishesInTheInextensibleLimit) {
 
 TEST(Gap, DoesNotGrowWithTheNumberOfParticles) {
   for (const Index particles : {8, 16, 32, 64}) {
-    Scene scene = calm_throw();
+    ChainScene scene = calm_throw();
     scene.particles = particles;
     scene.cloth.stretch_stiffness = 20000;
     const Problem problem = make_problem(scene);
-    const double gain = 6 * problem.chain.particle_mass;
-    const Points native = rollout(*native::make_backend(problem, 1.0 / 4000), gain).final;
+    const double gain = 6 * problem.chain().particle_mass;
+    const Points native =
+        rollout(*native::make_backend(with_time_step(problem, 1.0 / 4000)), gain).final;
     const Points box2d = rollout(*box2d::make_backend(problem), gain).final;
     EXPECT_LT(gap(problem, native, box2d), 3e-4) << particles;
   }
@@ -235,7 +236,7 @@ const std::vector<CalmMember>& calm_family() {
   static const std::vector<CalmMember> members = [] {
     std::vector<CalmMember> result;
     for (std::uint64_t n = 0; result.size() < 12; ++n) {
-      const Scene scene = scene_library::family_member(n);
+      const ChainScene scene = scene_library::family_member(n);
       if (scene.launch != Launch::inextensible) continue;
       const Problem problem = make_problem(scene);
       const auto backend = native::make_backend(problem);
@@ -248,8 +249,11 @@ const std::vector<CalmMember>& calm_family() {
   return members;
 }
 
-Points fly_box2d(const CalmMember& member, const box2d::Options& options = {}) {
-  return rollout(*box2d::make_backend(member.problem, options), member.native.gains).final;
+Points fly_box2d(const CalmMember& member, const box2d::Options& options = {},
+                 std::optional<double> time_step = std::nullopt) {
+  return rollout(*box2d::make_backend_with(options, with_time_step(member.problem, time_step)),
+                 member.native.gains)
+      .final;
 }
 
 TEST(CalmFamily, EndsInOneShapeOnBothEnginesAndWithBothHinges) {
@@ -278,10 +282,11 @@ TEST(CalmFamily, LeavesHardlyAGapWhenExtrapolatedToZeroStep) {
   std::vector<double> gaps;
   for (const CalmMember& member : calm_family()) {
     const double t0 = member.problem.arrival_time;
-    const Points coarse = fly_box2d(member, {.time_step = t0 / 1000});
-    const Points fine = fly_box2d(member, {.time_step = t0 / 2000});
-    const Points native =
-        rollout(*native::make_backend(member.problem, t0 / 12800), member.native.gains).final;
+    const Points coarse = fly_box2d(member, {}, t0 / 1000);
+    const Points fine = fly_box2d(member, {}, t0 / 2000);
+    const Points native = rollout(*native::make_backend(with_time_step(member.problem, t0 / 12800)),
+                                  member.native.gains)
+                              .final;
     // Both are of second order.
     gaps.push_back(gap(member.problem, native, (4 * fine - coarse) / 3));
   }
@@ -294,13 +299,13 @@ TEST(CalmFamily, HasTheSameErrorAtTheSameGain) {
     const auto native = native::make_backend(member.problem);
     const auto box2d = box2d::make_backend(member.problem);
     const double unit =
-        member.problem.chain.particle_mass / std::pow(member.problem.arrival_time, 2);
+        member.problem.chain().particle_mass / std::pow(member.problem.arrival_time, 2);
     for (const double times : {0.0, 1.0, 6.0, 20.0}) {
       const Rollout a = rollout(*native, times * unit);
       if (a.max_strain > 0.005 || sensitivity(*native, a) > 10) continue;
       const double difference = std::abs(rollout(*box2d, times * unit).error.mean - a.error.mean);
       ++points;
-      agreeing += difference <= std::max(0.02 * a.error.mean, 1e-3 * member.problem.chain.length);
+      agreeing += difference <= std::max(0.02 * a.error.mean, 1e-3 * member.problem.chain().size);
     }
   }
   EXPECT_GE(points, 30);
@@ -311,7 +316,7 @@ TEST(CalmFamily, KeepsItsShapeOnNativeAtHalfTheStep) {
   std::vector<double> changes;
   for (const CalmMember& member : calm_family()) {
     const auto usual = native::make_backend(member.problem);
-    const auto half = native::make_backend(member.problem, usual->time_step() / 2);
+    const auto half = native::make_backend(with_time_step(member.problem, usual->time_step() / 2));
     changes.push_back(
         gap(member.problem, member.native.final, rollout(*half, member.native.gains).final));
   }
@@ -326,7 +331,7 @@ TEST(FragileFlight, DisagreesWithItselfAtHalfTheStep) {
   // and the step. Not a defect of an engine, and the sensitivity says so beforehand.
   const Problem problem = make_problem(scene_library::family_member(35));
   const auto usual = native::make_backend(problem);
-  const auto half = native::make_backend(problem, usual->time_step() / 2);
+  const auto half = native::make_backend(with_time_step(problem, usual->time_step() / 2));
   double worst_growth = 0, worst_gap = 0;
   for (const double gain : {0.075, 0.08, 0.085, 0.09, 0.1}) {
     const Rollout flight = rollout(*usual, gain);

@@ -17,8 +17,8 @@ namespace {
 double shape_gap(const Problem& problem, double gain, std::optional<double> box2d_step) {
   const Points native = rollout(*native::make_backend(problem), gain).final;
   const Points box2d =
-      rollout(*box2d::make_backend(problem, {.time_step = box2d_step}), gain).final;
-  return shape_difference(native, box2d).mean / problem.chain.length;
+      rollout(*box2d::make_backend(with_time_step(problem, box2d_step)), gain).final;
+  return shape_difference(native, box2d).mean / problem.chain().size;
 }
 
 Problem inextensible_s_curve() {
@@ -33,15 +33,16 @@ TEST(CrossCheck, BothEnginesEndInOneShapeAtTheBestGain) {
 TEST(CrossCheck, TheGapShrinksWithTheStepOfBox2d) {
   // A throw of the family that swings fast enough to show the step; a calm one is at 1e-5 from the
   // first, which is rounding.
-  Scene scene = scene_library::family_member(31);
+  ChainScene scene = scene_library::family_member(31);
   scene.cloth.stretch_stiffness = 2e5;
   const Problem problem = make_problem(scene);
   const double t0 = problem.arrival_time, gain = 0.0553;
-  const Points native = rollout(*native::make_backend(problem, t0 / 25600), gain).final;
+  const Points native =
+      rollout(*native::make_backend(with_time_step(problem, t0 / 25600)), gain).final;
   const auto gap = [&](double steps) {
-    const auto box2d = box2d::make_backend(
-        problem, {.time_step = t0 / steps, .velocity_iterations = 32, .position_iterations = 4});
-    return shape_difference(native, rollout(*box2d, gain).final).mean / problem.chain.length;
+    const auto box2d = box2d::make_backend_with(
+        {.velocity_iterations = 32, .position_iterations = 4}, with_time_step(problem, t0 / steps));
+    return shape_difference(native, rollout(*box2d, gain).final).mean / problem.chain().size;
   };
   // Second order: half the step, a quarter of the gap.
   const double coarse = gap(1000), middle = gap(2000), fine = gap(4000);
@@ -57,7 +58,7 @@ TEST(CrossCheck, EachEngineFindsTheSameFirstValley) {
   const OptimizeSummary a = steepest_descent(objective(*native));
   const OptimizeSummary b = steepest_descent(objective(*box2d));
   EXPECT_NEAR(a.gain, b.gain, 0.02 * a.gain);
-  EXPECT_NEAR(a.error, b.error, 1e-3 * problem.chain.length);
+  EXPECT_NEAR(a.error, b.error, 1e-3 * problem.chain().size);
 }
 
 TEST(CrossCheck, TheOtherEnginesBestGainCostsLittle) {
@@ -73,14 +74,14 @@ TEST(CrossCheck, TheOtherEnginesBestGainCostsLittle) {
 TEST(CrossCheck, GlobalSearchIsNeverWorseThanSteepestDescent) {
   for (const auto& entry : std::filesystem::directory_iterator(NUNO_SCENES)) {
     if (entry.path().extension() != ".json") continue;
-    Scene scene = read_scene(entry.path().string());
+    ChainScene scene = read_scene(entry.path().string());
     const Problem problem = make_problem(scene);
     for (const bool box2d : {false, true}) {
-      if (box2d && problem.chain.particles() > 32) continue;  // for the test's time
+      if (box2d && problem.chain().particles() > 32) continue;  // for the test's time
       const auto backend = box2d ? box2d::make_backend(problem) : native::make_backend(problem);
       const Objective errors = objective(*backend);
       EXPECT_LE(global_search(errors).error,
-                steepest_descent(errors).error + 1e-6 * problem.chain.length)
+                steepest_descent(errors).error + 1e-6 * problem.chain().size)
           << scene.name << " on " << backend->name();
     }
   }

@@ -20,15 +20,12 @@ struct Engine {
 
 inline std::unique_ptr<Backend> make_native(const Problem& problem,
                                             std::optional<double> time_step) {
-  return native::make_backend(problem, time_step);
+  return native::make_backend(with_time_step(problem, time_step));
 }
 
 template <box2d::Hinge hinge>
 std::unique_ptr<Backend> make_box2d(const Problem& problem, std::optional<double> time_step) {
-  box2d::Options options;
-  options.time_step = time_step;
-  options.hinge = hinge;
-  return box2d::make_backend(problem, options);
+  return box2d::make_backend_with({.hinge = hinge}, with_time_step(problem, time_step));
 }
 
 inline const Engine native_engine = {"native", make_native, 1e-11, false};

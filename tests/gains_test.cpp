@@ -23,14 +23,14 @@ Gains by_group(std::vector<double> groups) { return Gains::of_groups(groups); }
 /// A throw under the paper's hold, and one under the damped morph.
 Problem hold_problem() { return make_problem(scene_library::straight_to_s()); }
 Problem morph_problem() {
-  Scene scene = scene_library::figure_throws()[4];
+  ChainScene scene = scene_library::figure_throws()[4];
   scene.reference = Reference::morph;
   scene.damping_ratio = 0.7;
   return make_problem(scene);
 }
 
 double gain_scale(const Problem& problem) {
-  return problem.chain.particle_mass / (problem.arrival_time * problem.arrival_time);
+  return problem.chain().particle_mass / (problem.arrival_time * problem.arrival_time);
 }
 
 /// Gains of one to four groups, unlike each other.
@@ -78,7 +78,7 @@ TEST(LowModes, FillEveryGroupWithTheFewestParticles) {
 TEST(GroupedControl, WithEqualGainsIsThatOfOneGain) {
   const Problem problem = morph_problem();
   const Points positions = problem.target * 1.3;
-  const Points velocities = problem.chain.initial;
+  const Points velocities = problem.chain().initial;
   const Points one = force_on(problem, 0.7, positions, velocities);
   for (Index groups = 2; groups <= most_groups; ++groups) {
     EXPECT_EQ(force_on(problem, Gains(0.7).split(groups), positions, velocities), one);
@@ -88,7 +88,7 @@ TEST(GroupedControl, WithEqualGainsIsThatOfOneGain) {
 TEST(GroupedControl, HasNoNetForce) {
   for (const Problem& problem : {hold_problem(), morph_problem()}) {
     for (const Gains& gains : unlike_gains(problem)) {
-      const Points force = force_on(problem, gains, problem.target * 1.3, problem.chain.initial);
+      const Points force = force_on(problem, gains, problem.target * 1.3, problem.chain().initial);
       EXPECT_GT(force.norm(), 1e-3);
       EXPECT_LT(force.rowwise().sum().norm(), 1e-14);  // rounding of 32 forces of 1e-2 N
     }
@@ -98,7 +98,7 @@ TEST(GroupedControl, HasNoNetForce) {
 TEST(GroupedControl, PullsEveryModeWithTheGainOfItsGroup) {
   Problem problem = hold_problem();
   problem.damping_ratio = 0.3;
-  const double mass = problem.chain.particle_mass;
+  const double mass = problem.chain().particle_mass;
   const std::vector<double> alphas = {0.2, 5, 0.7};
   const Gains gains = by_group(alphas);
   for (Index j = 1; j < N; ++j) {
@@ -122,7 +122,7 @@ TEST(GroupedControl, SwingsAModeAtTheFrequencyOfItsGroup) {
   // leapfrog's sin(ω'h/2) = √(α/m)·h/2.
   const std::vector<double> turns = {1, 7, 20};  // √(α/m)·t₀ of the groups [rad]
   for (const Index j : {1, 2, 3, 5, 6, 20}) {
-    Scene scene = scene_library::straight_to_s();
+    ChainScene scene = scene_library::straight_to_s();
     scene.initial.row(1).setZero();  // so that rounding across is of the mode's own size
     scene.target = scene.initial;
     scene.gravity = 0;
@@ -152,7 +152,7 @@ TEST(GroupedControl, SwingsAModeAtTheFrequencyOfItsGroup) {
     const double h = backend->time_step();
     const double turn = turns[j <= 2 ? 0 : j <= 5 ? 1 : 2];
     const double phase = 2 * std::asin(0.5 * turn * h) / h;  // t₀ is 1 s
-    const Eigen::RowVectorXd y = cloth->positions().row(1) - problem.chain.initial.row(1);
+    const Eigen::RowVectorXd y = cloth->positions().row(1) - problem.chain().initial.row(1);
     // Segments that tilt by 1e-6 stretch by 1e-12 of their length.
     EXPECT_LT((y - (1 - std::cos(phase)) * mode).norm(), 1e-7 * mode.norm()) << "mode " << j;
   }
@@ -232,14 +232,14 @@ TEST(GroupedFlight, BringsTheCentroidHomeOnEveryEngine) {
 }
 
 TEST(GroupedFlight, EndsInTheSameShapeOnBothEngines) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.launch = Launch::inextensible;
   const Problem problem = make_problem(scene);
   for (const Gains& gains : unlike_gains(problem)) {
     const Points one = rollout(*make_native(problem, 1e-4), gains).final;
     const Points other = rollout(*box2d::make_backend(problem), gains).final;
     // What the engines differ by on calm scenes, see docs/two-engines.md.
-    EXPECT_LT(shape_difference(one, other).mean, 1e-3 * problem.chain.length);
+    EXPECT_LT(shape_difference(one, other).mean, 1e-3 * problem.chain().size);
   }
 }
 
@@ -279,8 +279,8 @@ TEST(JointSearch, FindsTheBottomOfABowl) {
 }
 
 TEST(JointSearch, IsNeverWorseThanTheStageBefore) {
-  for (Scene scene : {scene_library::straight_to_s(), scene_library::family_member(3),
-                      scene_library::family_member(7)}) {
+  for (ChainScene scene : {scene_library::straight_to_s(), scene_library::family_member(3),
+                           scene_library::family_member(7)}) {
     for (const bool morph : {false, true}) {
       scene.reference = morph ? Reference::morph : Reference::hold;
       scene.damping_ratio = morph ? 0.7 : 0;

@@ -17,8 +17,8 @@ namespace {
 using std::numbers::pi;
 
 /// A chain alone in space: no gravity, no drag, no damping.
-Scene in_space(Index particles, double length) {
-  Scene scene;
+ChainScene in_space(Index particles, double length) {
+  ChainScene scene;
   scene.particles = particles;
   scene.arrival_time = 1;
   scene.gravity = 0;
@@ -33,12 +33,12 @@ double stored_energy(const Chain& chain, const Points& x) {
   double energy = 0;
   for (Index i = 0; i + 1 < x.cols(); ++i) {
     const double stretch = (x.col(i + 1) - x.col(i)).norm() - chain.rest_length[i];
-    energy += 0.5 * chain.cloth.stretch_stiffness / chain.rest_length[i] * stretch * stretch;
+    energy += 0.5 * chain.material.stretch_stiffness / chain.rest_length[i] * stretch * stretch;
   }
   for (Index i = 0; i + 2 < x.cols(); ++i) {
     const Eigen::Vector2d a = x.col(i + 1) - x.col(i), b = x.col(i + 2) - x.col(i + 1);
     const double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-    energy += 0.5 * chain.cloth.hinge_stiffness / chain.hinge_length[i] * angle * angle;
+    energy += 0.5 * chain.material.hinge_stiffness / chain.hinge_length[i] * angle * angle;
   }
   return energy;
 }
@@ -47,7 +47,7 @@ TEST(NativeChain, BeginsWithTheGradientOfItsStoredEnergy) {
   // The first kick lasts h/2, so v = (h/2m)·f; with a step of a nanosecond the tension's own look
   // ahead is nothing. Angles on both sides of every quadrant of the arctangent.
   for (const double turn : {0.3, -0.3, 0.9, 1.5, 1.7, -2.4, 2.9}) {
-    Scene scene = in_space(4, 0.3);
+    ChainScene scene = in_space(4, 0.3);
     const Eigen::Vector2d first(0.1, 0), second(0.1 * std::cos(turn), 0.1 * std::sin(turn));
     scene.initial.resize(2, 4);
     scene.initial << 0, first.x(), first.x() + second.x(), 2 * first.x() + second.x(),  //
@@ -56,18 +56,19 @@ TEST(NativeChain, BeginsWithTheGradientOfItsStoredEnergy) {
     scene.cloth.hinge_stiffness = 0.02;
     Problem problem = make_problem(scene);
     problem.arrival_time = 1e-9;
-    problem.chain.rest_length.array() *= 0.98;  // stretched, so that tension shows
-    const auto backend = native::make_backend(problem, 1e-9);
+    problem.chain().rest_length.array() *= 0.98;  // stretched, so that tension shows
+    const auto backend = native::make_backend(with_time_step(problem, 1e-9));
     const auto cloth = backend->start(Points::Zero(2, 4));
     cloth->step(Points::Zero(2, 4));
-    const Points force = cloth->velocities() * problem.chain.particle_mass / (0.5e-9);
+    const Points force = cloth->velocities() * problem.chain().particle_mass / (0.5e-9);
     for (Index i = 0; i < 4; ++i) {
       for (Index row = 0; row < 2; ++row) {
-        Points ahead = problem.chain.initial, behind = problem.chain.initial;
+        Points ahead = problem.chain().initial, behind = problem.chain().initial;
         ahead(row, i) += 1e-6;
         behind(row, i) -= 1e-6;
         const double expected =
-            -(stored_energy(problem.chain, ahead) - stored_energy(problem.chain, behind)) / 2e-6;
+            -(stored_energy(problem.chain(), ahead) - stored_energy(problem.chain(), behind)) /
+            2e-6;
         // Central differences: 1e-12 of third derivatives of order 1e4, and rounding 1e-16/1e-6.
         EXPECT_NEAR(force(row, i), expected, 1e-6) << "turn " << turn << " particle " << i;
       }
@@ -79,9 +80,9 @@ TEST(NativeChain, BeginsWithTheGradientOfItsStoredEnergy) {
 template <typename Coordinate>
 double frequency(const Problem& problem, double h, const Points& start_velocity,
                  Coordinate coordinate) {
-  const auto backend = native::make_backend(problem, h);
+  const auto backend = native::make_backend(with_time_step(problem, h));
   const auto cloth = backend->start(start_velocity);
-  const Points none = Points::Zero(2, problem.chain.particles());
+  const Points none = Points::Zero(2, problem.chain().particles());
   double last = coordinate(cloth->positions()), first_crossing = 0, last_crossing = 0;
   int crossings = 0;
   for (Index n = 0; n < backend->steps(); ++n) {
@@ -99,10 +100,10 @@ double frequency(const Problem& problem, double h, const Points& start_velocity,
 
 TEST(NativeChain, SwingsThreeParticlesAtTheFrequencyOfTheirHinge) {
   // Bending of three equal masses: θ = (y₀ − 2y₁ + y₂)/ℓ, so mθ̈ℓ² = −6·kθ.
-  Scene scene = in_space(3, 0.2);
+  ChainScene scene = in_space(3, 0.2);
   scene.arrival_time = 4;
   const Problem problem = make_problem(scene);
-  const double l = 0.1, m = problem.chain.particle_mass;
+  const double l = 0.1, m = problem.chain().particle_mass;
   const double expected = std::sqrt(6 * scene.cloth.hinge_stiffness / l / (m * l * l));
   Points velocity = Points::Zero(2, 3);
   velocity.row(1) << 1e-4, -2e-4, 1e-4;
@@ -117,7 +118,7 @@ TEST(NativeChain, BendsInTheFirstModeOfAFreeBeam) {
   // % after the end particles' half segments are counted to the length, L·N/(N − 1).
   double last_error = 0;
   for (const Index particles : {16, 32, 64}) {
-    Scene scene = in_space(particles, 1);
+    ChainScene scene = in_space(particles, 1);
     scene.arrival_time = 9;
     const Problem problem = make_problem(scene);
     const double length = static_cast<double>(particles) / static_cast<double>(particles - 1);
@@ -144,18 +145,18 @@ TEST(NativeChain, BendsInTheFirstModeOfAFreeBeam) {
 }
 
 TEST(NativeChain, LosesNoEnergyWithoutDamping) {
-  Scene scene = scene_library::family_member(2);
+  ChainScene scene = scene_library::family_member(2);
   scene.gravity = 0;
   scene.cloth.air_drag = 0;
   scene.cloth.stretch_damping = 0;
   const Problem problem = make_problem(scene);
-  const auto backend = native::make_backend(problem, 2e-5);
+  const auto backend = native::make_backend(with_time_step(problem, 2e-5));
   const Points start = launch(*backend);
   const auto cloth = backend->start(start);
-  const double m = problem.chain.particle_mass;
+  const double m = problem.chain().particle_mass;
   const double whole =
-      stored_energy(problem.chain, cloth->positions()) + 0.5 * m * start.squaredNorm();
-  const Points none = Points::Zero(2, problem.chain.particles());
+      stored_energy(problem.chain(), cloth->positions()) + 0.5 * m * start.squaredNorm();
+  const Points none = Points::Zero(2, problem.chain().particles());
   double worst = 0;
   Points before = start;
   for (Index n = 0; n < backend->steps(); ++n) {
@@ -165,7 +166,7 @@ TEST(NativeChain, LosesNoEnergyWithoutDamping) {
     if (n == 0) continue;
     // The velocity at the whole step is the mean of those half a step before and after.
     const double kinetic = 0.5 * m * (0.5 * (before + cloth->velocities())).squaredNorm();
-    worst = std::max(worst, std::abs(kinetic + stored_energy(problem.chain, x) - whole));
+    worst = std::max(worst, std::abs(kinetic + stored_energy(problem.chain(), x) - whole));
   }
   // The leapfrog's energy oscillates by (ωh)² of what is in each mode: 1e-3 of the stored part.
   EXPECT_LT(worst / whole, 2e-5);
@@ -173,7 +174,7 @@ TEST(NativeChain, LosesNoEnergyWithoutDamping) {
 
 TEST(NativeChain, LosesEnergyToEachDamper) {
   for (int damper = 0; damper < 3; ++damper) {
-    Scene scene = scene_library::family_member(3);
+    ChainScene scene = scene_library::family_member(3);
     scene.gravity = 0;
     scene.cloth.air_drag = damper == 0 ? 0.05 : 0;
     scene.cloth.stretch_damping = damper == 1 ? 6e-2 : 0;
@@ -183,27 +184,29 @@ TEST(NativeChain, LosesEnergyToEachDamper) {
     const auto backend = native::make_backend(problem);
     const Points start = launch(*backend);
     const auto cloth = backend->start(start);
-    const Points none = Points::Zero(2, problem.chain.particles());
+    const Points none = Points::Zero(2, problem.chain().particles());
     for (Index n = 0; n < backend->steps(); ++n) cloth->step(none);
-    const double m = problem.chain.particle_mass;
+    const double m = problem.chain().particle_mass;
     const double before =
-        stored_energy(problem.chain, problem.chain.initial) + 0.5 * m * start.squaredNorm();
-    const double after = stored_energy(problem.chain, cloth->positions()) +
+        stored_energy(problem.chain(), problem.chain().initial) + 0.5 * m * start.squaredNorm();
+    const double after = stored_energy(problem.chain(), cloth->positions()) +
                          0.5 * m * cloth->velocities().squaredNorm();
     EXPECT_LT(after, 0.999 * before) << "damper " << damper;
   }
 }
 
 TEST(NativeChain, ConvergesWithTheSquareOfTheStep) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.launch = Launch::inextensible;
   scene.cloth.stretch_damping = 0;  // the dashpots lag by half a step
   const Problem problem = make_problem(scene);
   const double gain = 0.02;
-  const Points exact = rollout(*native::make_backend(problem, 1.0 / 102400), gain).final;
+  const Points exact =
+      rollout(*native::make_backend(with_time_step(problem, 1.0 / 102400)), gain).final;
   double last = 0;
   for (const double steps : {1600.0, 3200.0, 6400.0}) {
-    const Points final = rollout(*native::make_backend(problem, 1 / steps), gain).final;
+    const Points final =
+        rollout(*native::make_backend(with_time_step(problem, 1 / steps)), gain).final;
     const double error = arrival_error(final, exact).mean;
     if (last > 0) {
       EXPECT_NEAR(std::log2(last / error), 2, 0.3) << steps;
@@ -213,7 +216,7 @@ TEST(NativeChain, ConvergesWithTheSquareOfTheStep) {
 }
 
 TEST(NativeChain, NeedsNoSmallerStepForAStifferThread) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.launch = Launch::inextensible;
   const Index steps = native::make_backend(make_problem(scene))->steps();
   scene.cloth.stretch_stiffness = 2e8;
@@ -222,29 +225,30 @@ TEST(NativeChain, NeedsNoSmallerStepForAStifferThread) {
   EXPECT_EQ(backend->steps(), steps);
   const Rollout flight = rollout(*backend, 0.02);
   EXPECT_EQ(flight.status, RolloutStatus::ok);
-  EXPECT_NEAR(segment_lengths(flight.final).sum(), problem.chain.length, 1e-4);
+  EXPECT_NEAR(segment_lengths(flight.final).sum(), problem.chain().size, 1e-4);
 }
 
 TEST(NativeChain, CutsAStepThatIsNotStable) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.cloth.hinge_stiffness = 0.1;
   const Problem problem = make_problem(scene);
-  const auto backend = native::make_backend(problem, 0.5);
+  const auto backend = native::make_backend(with_time_step(problem, 0.5));
   EXPECT_LT(backend->time_step(), 1e-3);
   const Rollout flight = rollout(*backend, 0.1);
   EXPECT_EQ(flight.status, RolloutStatus::ok);
-  EXPECT_LT(flight.error.max, 2 * problem.chain.length);
+  EXPECT_LT(flight.error.max, 2 * problem.chain().size);
 }
 
 TEST(NativeChain, TakesAStepThatIsStable) {
   const Problem problem = make_problem(scene_library::straight_to_s());
-  EXPECT_EQ(native::make_backend(problem, 1e-4)->steps(), 10'000);
-  EXPECT_EQ(native::make_backend(problem, 3e-4)->steps(), 3334);  // a whole number ends at t₀
+  EXPECT_EQ(native::make_backend(with_time_step(problem, 1e-4))->steps(), 10'000);
+  EXPECT_EQ(native::make_backend(with_time_step(problem, 3e-4))->steps(),
+            3334);  // a whole number ends at t₀
 }
 
 TEST(NativeBatch, GivesTheBitsOfOneRolloutEach) {
   for (const std::uint64_t n : {0u, 1u, 7u}) {
-    Scene scene = scene_library::family_member(n);
+    ChainScene scene = scene_library::family_member(n);
     if (n == 1) scene.cloth.hinge_damping = 1e-6;
     if (n == 7) scene.damping_ratio = 0.6;
     const Problem problem = make_problem(scene);

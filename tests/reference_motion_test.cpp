@@ -12,8 +12,8 @@
 namespace nuno {
 namespace {
 
-Scene morph_scene(std::string_view from, std::string_view to) {
-  Scene scene;
+ChainScene morph_scene(std::string_view from, std::string_view to) {
+  ChainScene scene;
   scene.arrival_time = 0.8;
   scene.initial = scene_library::figure(from);
   scene.target = scene_library::figure(to).colwise() + Eigen::Vector2d(2, 1);
@@ -30,7 +30,7 @@ ReferenceMotion arrived(const Problem& problem, Index steps) {
 }
 
 TEST(ReferenceMotion, HoldsTheTargetShapeFromTheStart) {
-  Scene scene = morph_scene("line", "S");
+  ChainScene scene = morph_scene("line", "S");
   scene.reference = Reference::hold;
   const Problem problem = make_problem(scene);
   const ReferenceMotion motion = arrived(problem, 100);
@@ -41,11 +41,11 @@ TEST(ReferenceMotion, HoldsTheTargetShapeFromTheStart) {
 TEST(ReferenceMotion, MorphsFromTheInitialShapeToTheTarget) {
   for (const Arrival arrival : {Arrival::pass, Arrival::settle}) {
     for (const auto& [from, to] : {std::pair{"line", "S"}, std::pair{"L", "spiral"}}) {
-      Scene scene = morph_scene(from, to);
+      ChainScene scene = morph_scene(from, to);
       scene.arrival = arrival;
       const Problem problem = make_problem(scene);
       const ReferenceMotion start(problem, 1e-3);
-      EXPECT_LT((start.shape() - shape_of(problem.chain.initial)).norm(), 1e-13);
+      EXPECT_LT((start.shape() - shape_of(problem.chain().initial)).norm(), 1e-13);
       // A rotation that itself is turned a thousand times collects 1000²/2 roundings of 1e-16.
       EXPECT_LT((arrived(problem, 1000).shape() - shape_of(problem.target)).norm(), 1e-10);
     }
@@ -58,7 +58,7 @@ TEST(ReferenceMotion, StretchesNothingOnTheWayWhenTheLengthsAgree) {
   for (Index n = 0; n < 64; ++n) {
     const double s = static_cast<double>(n) / 64;
     const Vector expected =
-        (1 - s) * segment_lengths(problem.chain.initial) + s * segment_lengths(problem.target);
+        (1 - s) * segment_lengths(problem.chain().initial) + s * segment_lengths(problem.target);
     EXPECT_LT((segment_lengths(motion.shape()) - expected).cwiseAbs().maxCoeff(), 1e-13);
     motion.advance();
   }
@@ -66,7 +66,7 @@ TEST(ReferenceMotion, StretchesNothingOnTheWayWhenTheLengthsAgree) {
 
 TEST(ReferenceMotion, BeginsWithItsVelocity) {
   for (const Arrival arrival : {Arrival::pass, Arrival::settle}) {
-    Scene scene = morph_scene("C", "S");
+    ChainScene scene = morph_scene("C", "S");
     scene.arrival = arrival;
     const Problem problem = make_problem(scene);
     const double h = 1e-6;
@@ -80,7 +80,7 @@ TEST(ReferenceMotion, BeginsWithItsVelocity) {
 }
 
 TEST(ReferenceMotion, SettlesWithTheShapeAtRest) {
-  Scene scene = morph_scene("line", "S");
+  ChainScene scene = morph_scene("line", "S");
   const double passing = arrived(make_problem(scene), 1000).velocity().norm();
   scene.arrival = Arrival::settle;
   const double settling = arrived(make_problem(scene), 1000).velocity().norm();
@@ -89,7 +89,7 @@ TEST(ReferenceMotion, SettlesWithTheShapeAtRest) {
 
 TEST(ReferenceMotion, TurnsTheShorterWayOnAverage) {
   // A line to itself turned by 170°, drawn so that the plain difference of directions is 190°.
-  Scene scene = morph_scene("line", "line");
+  ChainScene scene = morph_scene("line", "line");
   const double turn = 170.0 / 180 * 3.141592653589793;
   scene.initial = Points{{0.0, -std::cos(0.1)}, {0.0, -std::sin(0.1)}};
   scene.target = Points{{0.0, std::cos(turn)}, {0.0, std::sin(turn)}};
@@ -110,7 +110,7 @@ TEST(MorphControl, LaunchesAlongTheReference) {
 
 TEST(MorphControl, ArrivesNearerWithLessEffortThanHold) {
   for (const char* figure : {"C", "S", "Z", "spiral"}) {
-    Scene scene = morph_scene("line", figure);
+    ChainScene scene = morph_scene("line", figure);
     const auto morph = native::make_backend(make_problem(scene));
     scene.reference = Reference::hold;
     scene.damping_ratio = 0;

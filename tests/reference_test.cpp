@@ -38,7 +38,7 @@ TEST_P(NativeReference, GivesTheSameErrorAtEveryGain) {
   const std::vector<double> errors = backend->errors(expected.gains);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     // The bar of the project; the engine's own step error is below 4e-4 here.
-    EXPECT_NEAR(errors[i], expected.errors[i], 1e-3 * problem.chain.length)
+    EXPECT_NEAR(errors[i], expected.errors[i], 1e-3 * problem.chain().size)
         << "gain " << expected.gains[i];
   }
 }
@@ -48,7 +48,7 @@ TEST_P(NativeReference, EndsInTheSameShapes) {
   const Problem problem = problem_of(GetParam());
   const auto backend = native::make_backend(problem);
   for (const auto& item : expected.shapes.items()) {
-    Points shape(2, problem.chain.particles());
+    Points shape(2, problem.chain().particles());
     for (Index i = 0; i < shape.cols(); ++i) {
       const auto& point = item.value().at(static_cast<std::size_t>(i));
       shape.col(i) = Eigen::Vector2d(point.at(0), point.at(1));
@@ -57,7 +57,7 @@ TEST_P(NativeReference, EndsInTheSameShapes) {
     // Particle by particle, place included. A ballistic launch stretches the segments and leaves
     // them ringing for all of the flight; the default step resolves the slow part of that.
     const double resolved = problem.launch == Launch::inextensible ? 2e-4 : 5e-3;
-    EXPECT_LT(arrival_error(final, shape).mean, resolved * problem.chain.length) << item.key();
+    EXPECT_LT(arrival_error(final, shape).mean, resolved * problem.chain().size) << item.key();
   }
 }
 
@@ -71,7 +71,7 @@ TEST(Box2dReference, GivesTheSameErrorAtGainsUpToThreeTimesTheBest) {
   const auto backend = box2d::make_backend(problem);
   for (std::size_t i = 0; i < expected.gains.size() && expected.gains[i] <= 0.06; ++i) {
     EXPECT_NEAR(rollout(*backend, expected.gains[i]).error.mean, expected.errors[i],
-                2e-3 * problem.chain.length)
+                2e-3 * problem.chain().size)
         << "gain " << expected.gains[i];
   }
 }
@@ -90,7 +90,7 @@ TEST_P(SteepestDescentReference, EndsInTheFirstValley) {
   const auto backend = native::make_backend(problem);
   const OptimizeSummary summary = steepest_descent(objective(*backend));
   EXPECT_NEAR(summary.gain, gain, 0.03 * gain);
-  EXPECT_NEAR(summary.error / problem.chain.length, error, 1e-3);
+  EXPECT_NEAR(summary.error / problem.chain().size, error, 1e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, SteepestDescentReference,

@@ -22,7 +22,7 @@ std::unique_ptr<Backend> on_box2d(const Problem& problem) { return box2d::make_b
 
 /// A figure throw under the damped, moving reference.
 Problem morph_problem(std::size_t which) {
-  Scene scene = scene_library::figure_throws()[which];
+  ChainScene scene = scene_library::figure_throws()[which];
   scene.reference = Reference::morph;
   scene.damping_ratio = 0.7;
   return make_problem(scene);
@@ -34,7 +34,7 @@ Problem reachable(Problem problem) {
   Points& target = problem.target;
   for (Index i = 0; i + 1 < target.cols(); ++i) {
     const Eigen::Vector2d direction = (drawn.col(i + 1) - drawn.col(i)).normalized();
-    target.col(i + 1) = target.col(i) + problem.chain.rest_length[i] * direction;
+    target.col(i + 1) = target.col(i) + problem.chain().rest_length[i] * direction;
   }
   target = shape_of(target).colwise() + centroid(drawn);
   return problem;
@@ -104,7 +104,7 @@ TEST(Refine, ArrivesExactlyWhereTheTargetIsWithinReach) {
     const Problem problem = reachable(morph_problem(which));
     const RefineSummary summary = refine(problem, following_gain_of(problem), on_native, on_native);
     EXPECT_TRUE(summary.converged) << summary.reason;
-    EXPECT_LT(summary.flight.error.mean, 1e-9 * problem.chain.length);
+    EXPECT_LT(summary.flight.error.mean, 1e-9 * problem.chain().size);
     EXPECT_GT(summary.error_before, 1e-4);
   }
 }
@@ -117,7 +117,7 @@ TEST(Refine, ArrivesWithLessEffortThanAPlainFlightNeedsToComeNear) {
     EXPECT_TRUE(summary.converged) << summary.reason;
     // The plain control at 300 times as much gain is still a part in a thousand off.
     const Rollout plain = rollout(*backend, backend->largest_gain());
-    EXPECT_GT(plain.error.mean, 1e-3 * problem.chain.length);
+    EXPECT_GT(plain.error.mean, 1e-3 * problem.chain().size);
     EXPECT_LT(summary.flight.control_effort, 0.5 * plain.control_effort) << which;
   }
 }
@@ -174,7 +174,7 @@ TEST(Refine, ImprovesThePapersControlToo) {
 
 TEST(Refine, CarriesOverToTheOtherEngineAndIsCorrectedThere) {
   const Problem problem = reachable(morph_problem(2));
-  const double length = problem.chain.length;
+  const double length = problem.chain().size;
   const double gain = following_gain_of(problem);
   const RefineSummary answer = refine(problem, gain, on_native, on_native);
   Problem aimed = problem;

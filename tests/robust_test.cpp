@@ -23,7 +23,7 @@ TEST(RobustObjective, IsTheMeanErrorOverTheUndisturbedAndTheDisturbedStarts) {
   for (std::size_t i = 0; i < gains.size(); ++i) {
     double sum = rollout(*backend, gains[i]).error.mean;
     for (const unsigned seed : {1u, 2u, 3u}) {
-      const Points start = disturbed(backend->problem().chain, options.size, seed);
+      const Points start = disturbed(backend->problem(), options.size, seed);
       sum += rollout(*backend, gains[i], {}, start).error.mean;
     }
     EXPECT_NEAR(errors[i], sum / 4, 1e-15) << gains[i];

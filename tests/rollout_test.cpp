@@ -13,7 +13,7 @@ namespace nuno {
 namespace {
 
 TEST(Rollout, MeasuresControlEffortInWeights) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   const auto backend = native::make_backend(make_problem(scene));
   EXPECT_EQ(rollout(*backend, 0).control_effort, 0);
   // At a tiny gain the flight is that of launch only, so the effort grows in proportion.
@@ -24,14 +24,14 @@ TEST(Rollout, MeasuresControlEffortInWeights) {
 }
 
 TEST(Rollout, MeasuresControlEffortWithoutGravityToo) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.gravity = 0;
   const Problem problem = make_problem(scene);
-  EXPECT_DOUBLE_EQ(effort_unit(problem), problem.chain.particle_mass * problem.chain.length);
+  EXPECT_DOUBLE_EQ(effort_unit(problem), problem.chain().particle_mass * problem.chain().size);
 }
 
 TEST(Rollout, KnowsTheLargestStrainOnTheWay) {
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.launch = Launch::inextensible;
   const double soft = rollout(*native::make_backend(make_problem(scene)), 0.02).max_strain;
   scene.cloth.stretch_stiffness *= 100;
@@ -50,23 +50,24 @@ TEST(Rollout, SaysWhereAndWhyItDiverged) {
 }
 
 TEST(Disturbance, MovesByItsSizeAndStretchesNothing) {
-  const Chain chain = make_problem(scene_library::family_member(5)).chain;
+  const Problem problem = make_problem(scene_library::family_member(5));
+  const Chain& chain = problem.chain();
   for (const double size : {1e-8, 1e-4}) {
     for (const unsigned seed : {0u, 1u}) {
-      const Points moved = disturbed(chain, size, seed);
+      const Points moved = disturbed(problem, size, seed);
       const ArrivalError change = arrival_error(moved, chain.initial);
-      EXPECT_NEAR(change.mean / (size * chain.length), 1, 0.01);
+      EXPECT_NEAR(change.mean / (size * chain.size), 1, 0.01);
       EXPECT_LT(change.centroid, 1e-14);
       EXPECT_LT((segment_lengths(moved) - chain.rest_length).cwiseAbs().maxCoeff(), 1e-15);
     }
   }
-  EXPECT_GT((disturbed(chain, 1e-4, 0) - disturbed(chain, 1e-4, 1)).norm(), 1e-5);
+  EXPECT_GT((disturbed(problem, 1e-4, 0) - disturbed(problem, 1e-4, 1)).norm(), 1e-5);
 }
 
 TEST(Sensitivity, IsOneForAClothThatFliesRigidly) {
   // Straight, no bending stiffness, no gravity: a free particle keeps its displacement, but for the
   // segments' tension, which keeps their lengths.
-  Scene scene = scene_library::straight_to_s();
+  ChainScene scene = scene_library::straight_to_s();
   scene.target = scene.initial.colwise() + Eigen::Vector2d(2, 0);
   scene.gravity = 0;
   scene.cloth.air_drag = 0;

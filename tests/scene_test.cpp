@@ -10,7 +10,7 @@ const std::string smallest = R"({"nuno_scene": 1, "arrival_time": 1.5,
   "initial": [[0, 1], [1, 1]], "target": [[3, 1], [3, 1.5], [3, 3]]})";
 
 TEST(Scene, LeavesOutWhatHasADefault) {
-  const Scene scene = parse_scene(smallest, "folder/wave.json");
+  const ChainScene scene = parse_scene(smallest, "folder/wave.json");
   EXPECT_EQ(scene.name, "wave");
   EXPECT_EQ(scene.particles, 32);
   EXPECT_EQ(scene.arrival_time, 1.5);
@@ -28,7 +28,7 @@ TEST(Scene, LeavesOutWhatHasADefault) {
 }
 
 TEST(Scene, ReadsBackExactlyWhatItWrites) {
-  Scene scene = parse_scene(smallest, "wave");
+  ChainScene scene = parse_scene(smallest, "wave");
   scene.particles = 47;
   scene.arrival_time = 0.1 + 0.2;
   scene.gravity = 1.0 / 3;
@@ -39,7 +39,7 @@ TEST(Scene, ReadsBackExactlyWhatItWrites) {
   scene.time_step = 1.0 / 1024 / 3;
   scene.frames_per_second = 23.976;
   const std::string text = to_json(scene);
-  const Scene again = parse_scene(text, "other");
+  const ChainScene again = parse_scene(text, "other");
   EXPECT_EQ(to_json(again), text);
   EXPECT_EQ(again.arrival_time, scene.arrival_time);
   EXPECT_EQ(again.initial, scene.initial);
@@ -111,16 +111,16 @@ TEST(Scene, RefusesWhatIsNoJsonInOneLine) {
 }
 
 TEST(Problem, FitsTheTargetToTheClothAboutItsCentroid) {
-  const Scene scene = parse_scene(smallest, "wave");
+  const ChainScene scene = parse_scene(smallest, "wave");
   const Problem problem = make_problem(scene);
-  EXPECT_DOUBLE_EQ(problem.chain.length, 1);
+  EXPECT_DOUBLE_EQ(problem.chain().size, 1);
   EXPECT_DOUBLE_EQ(problem.target_scale, 0.5);
   EXPECT_NEAR(segment_lengths(problem.target).sum(), 1, 1e-15);
   EXPECT_LT((centroid(problem.target) - Eigen::Vector2d(3, 2)).norm(), 1e-15);
 }
 
 TEST(Problem, LeavesATargetAsDrawnOnRequest) {
-  Scene scene = parse_scene(smallest, "wave");
+  ChainScene scene = parse_scene(smallest, "wave");
   scene.target_length = TargetLength::as_drawn;
   const Problem problem = make_problem(scene);
   EXPECT_EQ(problem.target_scale, 1);
@@ -128,17 +128,18 @@ TEST(Problem, LeavesATargetAsDrawnOnRequest) {
 }
 
 TEST(Problem, SharesTheClothAmongItsParticles) {
-  Scene scene = parse_scene(smallest, "wave");
+  ChainScene scene = parse_scene(smallest, "wave");
   scene.particles = 50;
   const Problem problem = make_problem(scene);
-  EXPECT_DOUBLE_EQ(problem.chain.particle_mass, scene.cloth.mass / 50);
-  EXPECT_DOUBLE_EQ(problem.chain.particle_drag, scene.cloth.air_drag / 50);
-  EXPECT_EQ(problem.chain.rest_length.size(), 49);
-  EXPECT_EQ(problem.chain.hinge_length.size(), 48);
+  EXPECT_DOUBLE_EQ(problem.chain().particle_mass, scene.cloth.mass / 50);
+  EXPECT_DOUBLE_EQ(problem.chain().particle_mass * problem.chain().drag_rate,
+                   scene.cloth.air_drag / 50);
+  EXPECT_EQ(problem.chain().rest_length.size(), 49);
+  EXPECT_EQ(problem.chain().hinge_length.size(), 48);
 }
 
 TEST(Problem, RefusesADrawingThatFoldsTwoNeighboursOntoOneSpot) {
-  Scene scene = parse_scene(smallest, "wave");
+  ChainScene scene = parse_scene(smallest, "wave");
   scene.particles = 4;  // thirds of a line that runs there and back: particles 1 and 2 coincide
   scene.initial = Points{{0.0, 1.0, 0.0}, {0.0, 0.0, 0.0}};
   EXPECT_THROW(make_problem(scene), InputError);

@@ -49,7 +49,7 @@ struct Study {
     columns[name].seconds += seconds;
   }
 
-  void visit(const Scene& scene) {
+  void visit(const ChainScene& scene) {
     const Problem problem = make_problem(scene);
     const double t0 = problem.arrival_time;
     const auto backend = native::make_backend(problem);
@@ -58,15 +58,17 @@ struct Study {
     if (usual.max_strain > 0.005 || sensitivity(*backend, usual) > 10) return;
 
     const auto gap = [&](const Points& a, const Points& b) {
-      return a.allFinite() ? shape_difference(a, b).mean / problem.chain.length : no_answer;
+      return a.allFinite() ? shape_difference(a, b).mean / problem.chain().size : no_answer;
     };
     const double h = backend->time_step();
-    const Points fine = rollout(*native::make_backend(problem, h / 32), gain).final;
+    const Points fine = rollout(*native::make_backend(with_time_step(problem, h / 32)), gain).final;
     for (const int parts : {1, 2, 4}) {
       const auto start = Clock::now();
-      const Points coarse = rollout(*native::make_backend(problem, h / parts), gain).final;
+      const Points coarse =
+          rollout(*native::make_backend(with_time_step(problem, h / parts)), gain).final;
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-      const Points half = rollout(*native::make_backend(problem, h / (2 * parts)), gain).final;
+      const Points half =
+          rollout(*native::make_backend(with_time_step(problem, h / (2 * parts))), gain).final;
       add("1 native h/" + std::to_string(parts) + " against half of it", gap(coarse, half),
           seconds);
     }
@@ -77,13 +79,14 @@ struct Study {
                                std::to_string(steps) + ", " + std::to_string(iterations) +
                                " iterations";
       box2d::Options options;
-      options.time_step = t0 / steps;
       options.hinge = hinge;
       options.velocity_iterations = iterations;
       const auto start = Clock::now();
-      Points final = Points::Constant(2, problem.chain.particles(), std::nan(""));
+      Points final = Points::Constant(2, problem.chain().particles(), std::nan(""));
       try {
-        final = rollout(*box2d::make_backend(problem, options), gain).final;
+        final =
+            rollout(*box2d::make_backend_with(options, with_time_step(problem, t0 / steps)), gain)
+                .final;
       } catch (const InputError&) {  // bent beyond the pair's range from the start
       }
       const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -112,7 +115,7 @@ struct Study {
 
 int main() {
   nuno::Study study;
-  for (const nuno::Scene& scene : nuno::scene_library::family(64)) {
+  for (const nuno::ChainScene& scene : nuno::scene_library::family(64)) {
     if (scene.launch == nuno::Launch::inextensible) study.visit(scene);
   }
   std::printf(

@@ -69,7 +69,7 @@ Figure figure_5(const SceneFile& file) {
     curves.push_back(gain_curve(file, *backend, name == "native" ? 1000 : 200));
   }
   const Drawing drawing = draw_gain_curves(
-      curves, file.problem.chain.length,
+      curves, file.problem.cloth().size,
       {.title = "Error at arrival against the gain of the shape control",
        .subtitle = fmt::format("{}, {} particles, t₀ = {} s, both engines", file.scene.name,
                                file.scene.particles, file.scene.arrival_time)});
@@ -79,7 +79,7 @@ Figure figure_5(const SceneFile& file) {
 Figure flight_figure(const std::string& name, const std::string& title, const SceneFile& file,
                      const Backend& backend, double gain, const std::string& how) {
   const Rollout flight = flown(file, backend, gain);
-  const double percent = 100 / file.problem.chain.length;
+  const double percent = 100 / file.problem.cloth().size;
   const FlightFigure options{
       .title = title,
       .subtitle = fmt::format("{} particles, α = {} N/m{}: mean error {:.2f} % of the cloth’s "

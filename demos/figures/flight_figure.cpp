@@ -207,7 +207,7 @@ Flight make_flight(const std::string& scene, const Backend& backend, const Rollo
   return {.scene = scene,
           .backend = std::string(backend.name()),
           .gain = rollout.gains.rest,
-          .cloth_length = backend.problem().chain.length,
+          .cloth_length = backend.problem().cloth().size,
           .error = rollout.error.mean,
           .max_error = rollout.error.max,
           .target = backend.problem().target,

@@ -34,7 +34,7 @@ constexpr std::size_t trades_to_pick = 8;
 
 double frames_per_second(const Problem& problem) {
   const double affordable =
-      std::max(1.0, most_positions / static_cast<double>(problem.chain.particles()));
+      std::max(1.0, most_positions / static_cast<double>(problem.cloth().particles()));
   return std::min(most_frames, affordable) / problem.arrival_time;
 }
 
@@ -256,9 +256,9 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
                               const Backend& second) {
   const Problem& problem = first.problem();
   ReportScene scene{.comparison = comparison,
-                    .particles = problem.chain.particles(),
+                    .particles = problem.cloth().particles(),
                     .arrival_time = problem.arrival_time,
-                    .effort_unit = effort_unit_name(problem.chain),
+                    .effort_unit = effort_unit_name(problem.cloth()),
                     .descent = {},
                     .choices = {}};
   struct Wish {

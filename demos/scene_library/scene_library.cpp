@@ -262,16 +262,16 @@ const std::vector<std::string_view>& figure_names() {
   return names;
 }
 
-std::vector<Scene> figure_throws() {
+std::vector<ChainScene> figure_throws() {
   constexpr std::array<std::array<std::string_view, 2>, 20> throws = {{
       {"line", "C"}, {"line", "J"},      {"line", "M"},        {"line", "N"},    {"line", "S"},
       {"line", "U"}, {"line", "W"},      {"line", "Z"},        {"line", "2"},    {"line", "3"},
       {"line", "6"}, {"line", "spiral"}, {"line", "infinity"}, {"arch", "wave"}, {"S", "2"},
       {"C", "S"},    {"U", "arch"},      {"L", "V"},           {"wave", "O"},    {"hook", "spiral"},
   }};
-  std::vector<Scene> scenes;
+  std::vector<ChainScene> scenes;
   for (std::size_t i = 0; i < throws.size(); ++i) {
-    Scene scene;
+    ChainScene scene;
     scene.name = fmt::format("{}-to-{}", throws[i][0], throws[i][1]);
     scene.arrival_time = 0.6 + 0.6 * static_cast<double>(i % 4) / 3;
     scene.initial = figure(throws[i][0]).colwise() + Eigen::Vector2d(0, 1);
@@ -285,8 +285,8 @@ Points curve_from_direction(double (*direction)(double s), double length, const 
   return integrate(direction, length, center);
 }
 
-Scene straight_to_s() {
-  Scene scene;
+ChainScene straight_to_s() {
+  ChainScene scene;
   scene.name = "straight-to-s";
   scene.arrival_time = 1;
   scene.initial.resize(2, 2);
@@ -296,9 +296,9 @@ Scene straight_to_s() {
   return scene;
 }
 
-Scene family_member(std::uint64_t n) {
+ChainScene family_member(std::uint64_t n) {
   Random random(0x6e756e6f + n);
-  Scene scene;
+  ChainScene scene;
   scene.name = fmt::format("family-{:03}", n);
   scene.particles = 32;
   scene.arrival_time = random.uniform(0.4, 2);
@@ -313,8 +313,8 @@ Scene family_member(std::uint64_t n) {
   return scene;
 }
 
-std::vector<Scene> family(std::uint64_t count) {
-  std::vector<Scene> scenes;
+std::vector<ChainScene> family(std::uint64_t count) {
+  std::vector<ChainScene> scenes;
   for (std::uint64_t n = 0; n < count; ++n) scenes.push_back(family_member(n));
   return scenes;
 }

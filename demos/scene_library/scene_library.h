@@ -13,16 +13,16 @@ namespace nuno::scene_library {
 Points curve_from_direction(double (*direction)(double s), double length, const Vector& center);
 
 /// A straight 1 m cloth of 32 particles to an S of the same length, 1 s, 3 m away.
-Scene straight_to_s();
+ChainScene straight_to_s();
 
 /// The n-th scene of a seeded family: initial and target of smooth random curvature (turning up to
 /// ±1.5π), t₀ 0.4 … 2 s, hinge stiffness over three decades, stretch stiffness 200, 2000 or
 /// 20 000 N, both launches; every eighth has a sharp target instead (fold, letter Z, hairpin). The
 /// same n gives the same scene everywhere.
-Scene family_member(std::uint64_t n);
+ChainScene family_member(std::uint64_t n);
 
 /// The first `count` of them.
-std::vector<Scene> family(std::uint64_t count);
+std::vector<ChainScene> family(std::uint64_t count);
 
 /// A single-stroke figure about the origin, 1 m long [2 × any]: see figure_names.
 Points figure(std::string_view name);
@@ -33,6 +33,6 @@ const std::vector<std::string_view>& figure_names();
 
 /// Twenty throws of a 1 m cloth of 32 particles onto these figures, from a line and from one
 /// another, in 0.6 to 1.2 s.
-std::vector<Scene> figure_throws();
+std::vector<ChainScene> figure_throws();
 
 }  // namespace nuno::scene_library

@@ -82,13 +82,13 @@ std::string drawable(const Throw& done, const std::string& optimizer, const Flig
                {"alpha", flight.gains.rest},
                {"time_step", backend.time_step()},
                {"steps", backend.steps()},
-               {"cloth_length", problem.chain.length},
+               {"cloth_length", problem.cloth().size},
                {"target_scale", problem.target_scale},
                {"error",
                 {{"mean", flight.error.mean},
                  {"max", flight.error.max},
                  {"centroid", flight.error.centroid},
-                 {"relative", flight.error.mean / problem.chain.length}}},
+                 {"relative", flight.error.mean / problem.cloth().size}}},
                {"control_effort", flight.control_effort},
                {"effort_unit", effort_unit(problem)},
                {"max_strain", flight.max_strain}};
@@ -102,7 +102,7 @@ std::string drawable(const Throw& done, const std::string& optimizer, const Flig
   std::string text = dump(head);
   text.pop_back();  // the brace: the shapes follow
   text += ",\"initial\":";
-  append(text, problem.chain.initial);
+  append(text, problem.cloth().initial);
   text += ",\"target\":";
   append(text, problem.target);
   text += ",\"final\":";
@@ -146,7 +146,7 @@ Answer diverged_answer(const SceneFile& file, const Backend& backend, const Roll
 
 Answer about_answer(const Request&) {
   // A scene of defaults; the required fields are left out of it.
-  Json defaults = Json::parse(nuno::to_json(Scene{}));
+  Json defaults = Json::parse(nuno::to_json(ChainScene{}));
   for (const char* required : {"name", "arrival_time", "initial", "target"}) {
     defaults.erase(required);
   }
@@ -183,7 +183,7 @@ Answer trade_off_answer(const Request& request) {
   }
   return {.body = dump({{"scene", file.scene.name},
                         {"backend", backend->name()},
-                        {"cloth_length", backend->problem().chain.length},
+                        {"cloth_length", backend->problem().cloth().size},
                         {"effort_unit", effort_unit(backend->problem())},
                         {"trade_off", points}})};
 }

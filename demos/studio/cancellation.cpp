@@ -44,7 +44,7 @@ Turn Turns::running(const std::string& page) {
 
 double work_of(const Backend& backend) {
   return static_cast<double>(backend.steps()) *
-         static_cast<double>(backend.problem().chain.particles());
+         static_cast<double>(backend.problem().cloth().particles());
 }
 
 Objective cancellable(const Backend& backend, const Turn& turn) {

@@ -120,7 +120,7 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
 }
 
 void require_few_frames_in_file(const SceneFile& file) {
-  const Scene& scene = file.scene;
+  const ChainScene& scene = file.scene;
   const double most = frames_per_second_of(most_points_in_frames, scene);
   if (scene.frames_per_second > most) {
     throw InputError(

@@ -3,7 +3,6 @@
 #include <nuno/backend.h>
 
 #include <memory>
-#include <optional>
 
 namespace nuno::box2d {
 
@@ -18,7 +17,6 @@ enum class Hinge {
 };
 
 struct Options {
-  std::optional<double> time_step;  ///< [s], > 0; absent: 1/1000 of the arrival time
   Hinge hinge = Hinge::soft_weld;
   int velocity_iterations = 8;  ///< > 0
   int position_iterations = 4;  ///< > 0
@@ -28,13 +26,17 @@ struct Options {
 /// poses. Rods do not stretch: `stretch_stiffness` and `stretch_damping` have no effect here, and
 /// of launch velocities only what keeps every segment's length is taken (see without_stretching).
 ///
-/// The time step, wished or not, is cut to what is stable for the hinges, to 1/4 of the time that
-/// drag takes, to one segment's length of flight, and to a whole number of steps.
+/// The time step, the problem's or 1/1000 of the arrival time, is cut to what is stable for the
+/// hinges, to 1/4 of the time that drag takes, to one segment's length of flight, and to a whole
+/// number of steps.
 ///
 /// A cloth that moves out of Box2D's range (1.9 mean segments or 1.5 rad per step) has diverged:
 /// its positions are NaN from then on. Throws InputError for a scene that Box2D cannot hold: more
 /// than 4096 particles, a segment below 1/1000 of the mean, a step that would make more than
 /// most_steps.
-std::unique_ptr<Backend> make_backend(const Problem& problem, const Options& options = {});
+std::unique_ptr<Backend> make_backend(const Problem& problem);
+
+/// The same with joints and iterations of one's own choice.
+std::unique_ptr<Backend> make_backend_with(const Options& options, const Problem& problem);
 
 }  // namespace nuno::box2d

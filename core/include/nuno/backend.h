@@ -25,12 +25,12 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
-  /// Advances by one time step under an external force on every particle [2 × N], N.
+  /// Advances by one time step under an external force on every particle [d × N], N.
   virtual void step(const Points& forces) = 0;
 
-  virtual const Points& positions() const = 0;  ///< [2 × N], m
+  virtual const Points& positions() const = 0;  ///< [d × N], m
 
-  /// Mean velocity over the last step (the launch velocity before the first) [2 × N], m/s.
+  /// Mean velocity over the last step (the launch velocity before the first) [d × N], m/s.
   virtual const Points& velocities() const = 0;
 
   /// Why the engine gave this flight up, in its own words; empty while it flies, and for an engine
@@ -44,23 +44,23 @@ struct ErrorSample {
     /// dE/dα [m²/N]; damped and at α = 0, where it is infinite, of the springs; 0 where the rollout
     /// diverged.
     double error = 0;
-    Points miss;  ///< [2 × N], m²/N; empty where it diverged
+    Points miss;  ///< [d × N], m²/N; empty where it diverged
   };
 
   double error = 0;  ///< E [m]; +∞ where the rollout diverged
-  Points miss;       ///< final positions less the target [2 × N], m; empty where it diverged
+  Points miss;       ///< final positions less the target [d × N], m; empty where it diverged
   std::vector<Slope> slopes;  ///< by the gain of every group
 };
 
 /// Ways to change a problem's aim offset: each adds a shape to the offset of one of aim_powers.
 struct AimDirections {
   std::vector<Index> powers;  ///< which of aim_powers, for each direction
-  Eigen::MatrixXd shapes;     ///< [2N × directions], x₀ y₀ x₁ y₁ …, m
+  Eigen::MatrixXd shapes;     ///< [d·N × directions], a particle after another, m
 };
 
 /// A flight, and its derivatives along some directions.
 struct FlightTangent {
-  Eigen::MatrixXd arrival;  ///< of the particles' positions at arrival [2N × directions]
+  Eigen::MatrixXd arrival;  ///< of the particles' positions at arrival [d·N × directions]
   /// Control forces at some times on the way, weighted so that their squares sum to the square of
   /// the control effort (see Rollout) as nearly as the times tell.
   Vector forces;
@@ -71,57 +71,82 @@ struct FlightTangent {
 inline constexpr double most_steps = 50e6;
 
 /// An engine, made ready for one problem: const, and shared by any number of threads.
+///
+/// Who writes one says how it begins and what its drag recurrence is; all else has a default.
 class Backend {
  public:
   virtual ~Backend() = default;
 
-  virtual std::string_view name() const = 0;
+  std::string_view name() const { return name_; }
   const Problem& problem() const { return problem_; }
+  const Cloth& cloth() const { return problem_.cloth(); }
   double time_step() const { return problem_.arrival_time / static_cast<double>(steps_); }
   Index steps() const { return steps_; }  ///< a whole number of them ends at t₀
 
-  /// The largest gain that the time step resolves [N/m]: by default of √(α/m)·h = 0.2 rad, where
-  /// the control's own oscillation takes 30 steps.
-  virtual double largest_gain() const;
-  virtual DragRecurrence drag_recurrence() const = 0;
+  /// The largest gain that the time step resolves [N/m].
+  double largest_gain() const { return do_largest_gain(); }
+  DragRecurrence drag_recurrence() const { return do_drag_recurrence(); }
 
-  /// A cloth at these positions with these velocities [2 × N], m and m/s. Its segments are at rest
-  /// at the lengths of the problem's chain.
-  virtual std::unique_ptr<Simulation> start(const Points& positions,
-                                            const Points& velocities) const = 0;
-
+  /// A cloth at these positions (the initial ones, if they are left out) with these velocities
+  /// [d × N], m and m/s. Its edges are at rest at the lengths of the problem's cloth.
+  std::unique_ptr<Simulation> start(const Points& positions, const Points& velocities) const {
+    return do_start(positions, velocities);
+  }
   std::unique_ptr<Simulation> start(const Points& velocities) const {
-    return start(problem_.chain.initial, velocities);
+    return do_start(cloth().initial, velocities);
   }
 
   /// The smallest disturbance of the initial positions, over L, whose growth the engine's
   /// arithmetic lets one measure.
-  virtual double smallest_disturbance() const = 0;
+  double smallest_disturbance() const { return do_smallest_disturbance(); }
 
   /// E under many gains, as many groups in each, as `rollout` gives it, from these positions
-  /// [2 × N]; by default a rollout each, over all cores.
-  virtual std::vector<double> errors(std::span<const Gains> gains, const Points& initial) const;
+  /// [d × N]; the initial ones, if they are left out.
+  std::vector<double> errors(std::span<const Gains> gains, const Points& initial) const {
+    return do_errors(gains, initial);
+  }
   std::vector<double> errors(std::span<const Gains> gains) const {
-    return errors(gains, problem_.chain.initial);
+    return do_errors(gains, cloth().initial);
   }
 
   /// Whether the two below are there: an engine that knows its derivatives.
-  virtual bool has_slopes() const { return false; }
+  bool has_slopes() const { return do_has_slopes(); }
 
   /// E and its derivatives under many gains, as many groups in each, from the initial positions.
-  virtual std::vector<ErrorSample> error_samples(std::span<const Gains> gains) const;
+  std::vector<ErrorSample> error_samples(std::span<const Gains> gains) const {
+    return do_error_samples(gains);
+  }
 
   /// The flight at one gain, and its derivatives along these directions.
-  virtual FlightTangent flight_tangent(double gain, const AimDirections& directions) const;
+  FlightTangent flight_tangent(double gain, const AimDirections& directions) const {
+    return do_flight_tangent(gain, directions);
+  }
 
   /// `errors` and `error_samples` at many values of one gain for all modes.
   std::vector<double> errors(std::span<const double> gains) const;
   std::vector<ErrorSample> error_samples(std::span<const double> gains) const;
 
  protected:
-  Backend(Problem problem, Index steps) : problem_(std::move(problem)), steps_(steps) {}
+  /// `name` must live as long as the program: a literal.
+  Backend(std::string_view name, Problem problem, Index steps)
+      : name_(name), problem_(std::move(problem)), steps_(steps) {}
 
  private:
+  virtual std::unique_ptr<Simulation> do_start(const Points& positions,
+                                               const Points& velocities) const = 0;
+  virtual DragRecurrence do_drag_recurrence() const = 0;
+
+  /// By default of √(α/m)·h = 0.2 rad, where the control's own oscillation takes 30 steps.
+  virtual double do_largest_gain() const;
+  /// By default for double precision: a millionth of it is the rounding of a flight (1e-14).
+  virtual double do_smallest_disturbance() const { return 1e-8; }
+  /// By default a rollout each, over all cores.
+  virtual std::vector<double> do_errors(std::span<const Gains> gains, const Points& initial) const;
+  virtual bool do_has_slopes() const { return false; }
+  virtual std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const;
+  virtual FlightTangent do_flight_tangent(double gain, const AimDirections& directions) const;
+
+  std::string_view name_;
   Problem problem_;
   Index steps_;
 };

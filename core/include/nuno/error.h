@@ -1,6 +1,6 @@
 #pragma once
 
-#include <nuno/points.h>
+#include <nuno/cloth.h>
 
 namespace nuno {
 
@@ -11,14 +11,19 @@ struct ArrivalError {
   double centroid = 0;  ///< distance of the centroids
 };
 
+/// Shapes [d × N] of particles of equal mass.
 ArrivalError arrival_error(const Points& final, const Points& target);
+/// The same of a cloth whose masses may differ: `centroid` is of the mass centres.
+ArrivalError arrival_error(const Cloth& cloth, const Points& final, const Points& target);
 
-/// Mean and largest distance of two shapes [2 × N] with their centroids aligned [m].
+/// Mean and largest distance of two shapes [d × N] with their centroids aligned [m].
 struct ShapeDifference {
   double mean = 0;
   double max = 0;
 };
 
 ShapeDifference shape_difference(const Points& a, const Points& b);
+/// The same with the mass centres aligned.
+ShapeDifference shape_difference(const Cloth& cloth, const Points& a, const Points& b);
 
 }  // namespace nuno

@@ -4,10 +4,11 @@
 
 namespace nuno {
 
-/// Velocities that bring each particle from `from` to `to` [2 × N] in `arrival_time` under gravity
+/// Velocities that bring each particle from `from` to `to` [d × N] in `arrival_time` under gravity
 /// and linear drag, κ = k/m [1/s]: equations (1) and (2) of the paper, with z = κ·t₀ and
 /// φ = (1 − e⁻ᶻ)/z,
-///     v_x = Δx/(t₀·φ),   v_y = Δy/(t₀·φ) + g·t₀·(1 − φ)/(z·φ).
+///     v_x = Δx/(t₀·φ),   v_y = Δy/(t₀·φ) + g·t₀·(1 − φ)/(z·φ),
+/// and in space v_z like v_x.
 /// The paper prints g₀ for the last term of (2), where its derivation gives g·t₀: integrating
 /// m·v̇ = −m·g − k·v twice,
 ///     y(t₀) − y₀ = (m/k)·(v₀ + m·g/k)·(1 − e⁻ᶻ) − (m·g/k)·t₀.
@@ -22,6 +23,13 @@ Points ballistic_launch(const Points& from, const Points& to, double gravity,
 /// The velocities nearest to the given ones (least squares; equal masses) that leave the length of
 /// every segment of the chain `positions` unchanged. Keeps the total momentum.
 Points without_stretching(const Points& positions, const Points& velocities);
+
+/// The same for any cloth in these positions [d × N]: those nearest by mass-weighted least squares
+/// that leave the length of every edge unchanged, or as nearly as the edges allow.
+Points without_stretching(const Cloth& cloth, const Points& positions, const Points& velocities);
+
+/// The same from the problem's initial positions.
+Points without_stretching(const Problem& problem, const Points& velocities);
 
 /// The launch that the backend's problem asks for, arriving on the backend's own recurrence: each
 /// particle on its own ballistic path, or, where the reference moves, the shape along the reference

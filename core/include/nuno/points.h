@@ -18,6 +18,11 @@ Vector centroid(const Points& points);
 /// The points moved so that their centroid is the origin.
 Points shape_of(const Points& points);
 
+/// The same with masses that differ: mean of the columns, each times its relative mass mᵢ/m̄ [N].
+/// Where all are 1, equal to those above to the last bit.
+Vector mass_center(const Points& points, const Vector& relative_mass);
+Points shape_of(const Points& points, const Vector& relative_mass);
+
 /// Lengths of the segments between neighbouring columns [particles − 1].
 Vector segment_lengths(const Points& points);
 

@@ -18,14 +18,14 @@ enum class RolloutStatus { ok, diverged };
 /// One flight, and how it arrived.
 struct Rollout {
   RolloutStatus status = RolloutStatus::ok;
-  Gains gains = 0;                  ///< α of every group [N/m]
-  Points launch_velocity;           ///< [2 × N], m/s
-  Points final;                     ///< positions at arrival [2 × N], m
-  ArrivalError error;               ///< infinite where the rollout diverged
-  double control_effort = 0;        ///< rms control force over particles and time / particle weight
-  double max_strain = 0;            ///< largest |l/ℓ − 1| of a segment on the way
-  std::vector<double> frame_times;  ///< [s]
-  std::vector<Points> frame_positions;  ///< [2 × N] each, m
+  Gains gains = 0;            ///< α of every group [N/m]
+  Points launch_velocity;     ///< [d × N], m/s
+  Points final;               ///< positions at arrival [d × N], m
+  ArrivalError error;         ///< infinite where the rollout diverged
+  double control_effort = 0;  ///< rms over particles and time of control force / particle weight
+  double max_strain = 0;      ///< largest |l/ℓ − 1| of an edge on the way
+  std::vector<double> frame_times;      ///< [s]
+  std::vector<Points> frame_positions;  ///< [d × N] each, m
   Index diverged_at_step = 0;           ///< the first step with a bad value
   std::string reason;                   ///< why it diverged, for people
 };
@@ -33,14 +33,15 @@ struct Rollout {
 /// Launch, then {shape control, step} until arrival, under gains ≥ 0 [N/m]; 0 is launch only.
 Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options = {});
 
-/// The same launch from other positions [2 × N], m.
+/// The same launch from other positions [d × N], m.
 Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions& options,
                 const Points& initial);
 
-/// The chain's initial positions with every segment turned a little, by a pattern that has all
-/// wavelengths: the particles move by `size`·L on average, no segment changes its length, and the
-/// centroid stays. Different `seed`s give different patterns.
-Points disturbed(const Chain& chain, double size, unsigned seed = 0);
+/// The initial positions moved a little, by a pattern that has all wavelengths: by `size`·L on
+/// average, and the mass centre stays. A chain turns its segments, which keep their lengths; a
+/// sheet moves along its normals, so that a flat one keeps those of its edges to first order.
+/// Different `seed`s give different patterns.
+Points disturbed(const Problem& problem, double size, unsigned seed = 0);
 
 /// How much a small disturbance at the start has grown by arrival: mean displacement at the end
 /// over mean displacement at the start, of `flight` against a twin from disturbed positions. A
@@ -48,12 +49,12 @@ Points disturbed(const Chain& chain, double size, unsigned seed = 0);
 /// the twins have nothing in common any more.
 double sensitivity(const Backend& backend, const Rollout& flight);
 
-/// Whether these positions [2 × N] are no cloth any more: a segment of a thousand times its length,
+/// Whether these positions [d × N] are no cloth any more: an edge of a thousand times its length,
 /// or not finite. A rollout that gets there has diverged.
-bool is_torn(const Chain& chain, const Points& positions);
+bool is_torn(const Cloth& cloth, const Points& positions);
 
-/// The force that control effort is measured in [N]: a particle's weight m·g, or m·L/t₀² without
-/// gravity.
+/// The force that control effort is measured in [N]: the weight m̄·g of a particle of mean mass, or
+/// m̄·L/t₀² without gravity. A force on a particle counts as its m̄/mᵢ.
 double effort_unit(const Problem& problem);
 
 }  // namespace nuno

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 int main() {
-  nuno::Scene scene;
+  nuno::ChainScene scene;
   scene.arrival_time = 1;
   scene.initial = (nuno::Points(2, 2) << 0, 1, 1, 1).finished();
   scene.target = (nuno::Points(2, 3) << 3, 3.5, 4, 1, 1.4, 1).finished();
