@@ -2,6 +2,7 @@
 
 #include <nuno/native.h>
 #include <nuno/optimize.h>
+#include <nuno/scene_file.h>
 
 #include <algorithm>
 #include <array>

@@ -49,12 +49,6 @@ struct CompareOptions {
   std::string out;                  ///< folder, "-" for compare.json on standard output, or none
 };
 
-/// The page on which both shapes are drawn.
-struct StudioOptions {
-  int port = 8471;            ///< of 127.0.0.1, 0 … 65535; 0, or one that is taken: any free one
-  bool opens_browser = true;  ///< where there is a desktop
-};
-
 /// The paper's figures from our own runs.
 struct FiguresOptions {
   std::string out = "figures";  ///< folder
@@ -79,6 +73,5 @@ ExitStatus optimize(const OptimizeOptions& options);
 ExitStatus compare(const CompareOptions& options);
 ExitStatus make_figures(const FiguresOptions& options);
 ExitStatus render(const RenderOptions& options);
-ExitStatus serve_studio(const StudioOptions& options);
 
 }  // namespace nuno

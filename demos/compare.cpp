@@ -4,14 +4,15 @@
 #include <cctype>
 #include <filesystem>
 
+#include <nuno/comparison.h>
+#include <nuno/conditioning.h>
+#include <nuno/engines.h>
+#include <nuno/output.h>
+#include <nuno/progress.h>
+#include <nuno/result_file.h>
 #include "commands.h"
-#include "comparison.h"
-#include "engines.h"
-#include "json_files.h"
-#include "output.h"
-#include "report/report.h"
-#include "rollouts.h"
-#include "summary.h"
+#include "pictures/report.h"
+#include "pictures/summary.h"
 
 namespace nuno {
 namespace {
@@ -152,7 +153,12 @@ ExitStatus compare(const CompareOptions& options) {
   std::vector<ReportScene> report;
   print_heading(table, width);
   for (const Pair& pair : pairs) {
-    Comparison comparison = compare_engines(pair.file.scene.name, *pair.native, *pair.box2d);
+    Comparison comparison = compare_engines(
+        pair.file.scene.name, *pair.native, *pair.box2d,
+        {.objective_of = [&](const Backend& backend) {
+          return with_progress(objective(backend),
+                               fmt::format("{} on {}", pair.file.scene.name, backend.name()));
+        }});
     clear_progress();
     if (comparison.divergence) {
       const auto& [backend, flight] = *comparison.divergence;

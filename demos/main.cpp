@@ -19,9 +19,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <nuno/engines.h>
+#include <nuno/output.h>
 #include "commands.h"
-#include "engines.h"
-#include "output.h"
+#include "studio/studio.h"
 
 namespace nuno {
 namespace {
@@ -327,7 +328,12 @@ ExitStatus run(int argc, char** argv) {
   studio_command.add_flag_callback(
       "--no-open", [&] { studio_options.opens_browser = false; }, "Do not open the browser");
   studio_command.group(commands);
-  studio_command.callback([&] { chosen = [&] { return serve_studio(studio_options); }; });
+  studio_command.callback([&] {
+    chosen = [&] {
+      serve_studio(studio_options);
+      return ExitStatus::done;
+    };
+  });
 
   FiguresOptions pictures;
   CLI::App& figures_command =

@@ -9,11 +9,12 @@
 #include <chrono>
 #include <cmath>
 
+#include <nuno/conditioning.h>
+#include <nuno/output.h>
+#include <nuno/progress.h>
 #include "commands.h"
-#include "output.h"
-#include "rollouts.h"
+#include "pictures/summary.h"
 #include "single_flight.h"
-#include "summary.h"
 
 namespace nuno {
 namespace {

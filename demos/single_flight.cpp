@@ -1,8 +1,9 @@
 #include "single_flight.h"
 
-#include "output.h"
-#include "rollouts.h"
-#include "summary.h"
+#include <nuno/conditioning.h>
+#include <nuno/output.h>
+#include <nuno/progress.h>
+#include "pictures/summary.h"
 
 namespace nuno {
 

@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include <nuno/engines.h>
+#include <nuno/result_file.h>
 #include "commands.h"
-#include "engines.h"
-#include "json_files.h"
 
 namespace nuno {
 

@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <nuno/scene_file.h>
+
 #include "scene_library.h"
 
 int main(int argc, char** argv) {

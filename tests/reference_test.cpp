@@ -4,6 +4,7 @@
 
 #include <nuno/optimize.h>
 #include <nuno/rollout.h>
+#include <nuno/scene_file.h>
 
 #include <gtest/gtest.h>
 

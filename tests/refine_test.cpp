@@ -2,6 +2,7 @@
 #include <nuno/native.h>
 #include <nuno/reference_motion.h>
 #include <nuno/refine.h>
+#include <nuno/scene_file.h>
 #include <nuno/trade_off.h>
 
 #include <gtest/gtest.h>

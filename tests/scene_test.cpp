@@ -1,5 +1,6 @@
 #include <nuno/problem.h>
 #include <nuno/scene.h>
+#include <nuno/scene_file.h>
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <nuno/rollout.h>
+
+#include <string>
+
+namespace nuno {
+
+/// A disturbance of the start that grows more than this has a fragile answer.
+inline constexpr double largest_calm_sensitivity = 10;
+
+/// A cloth that stretches more than this is not the inextensible one that rods stand for.
+inline constexpr double largest_calm_strain = 0.005;
+
+/// Whether a rollout has no answer to show: it diverged, or it grew so far that its error is no
+/// number.
+bool diverged(const Rollout& rollout);
+
+/// What `sensitivity` says of a flight that has arrived, as a number that a file can hold: at most
+/// the growth at which the twins have nothing in common.
+double bounded_sensitivity(const Backend& backend, const Rollout& flight);
+
+/// The words for a sensitivity above 10; empty for a calm flight.
+std::string fragility(double sensitivity);
+
+/// At which step a rollout diverged and why.
+std::string divergence_message(const std::string& scene_path, const Backend& backend,
+                               const Rollout& rollout);
+
+}  // namespace nuno

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <nuno/backend.h>
+#include <nuno/joint_search.h>
+#include <nuno/optimize.h>
+#include <nuno/refine.h>
+#include <nuno/rollout.h>
+#include <nuno/trade_off.h>
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <nuno/comparison.h>
+
+namespace nuno {
+
+/// How the gain of a result was found.
+struct Optimization {
+  std::string optimizer;
+  OptimizeSummary summary;
+  std::optional<double> robust_error = {};  ///< of a robust search: mean over disturbed starts [m]
+  std::vector<TradeOffPoint> trade_off = {};     ///< where a limit was asked for
+  std::optional<JointSearchSummary> joint = {};  ///< where there are several coefficients
+  std::optional<RefineSummary> refinement = {};  ///< where the flight aims off
+};
+
+/// The result JSON of one rollout, which has not diverged.
+void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+                  const Rollout& rollout, double sensitivity,
+                  const std::optional<Optimization>& optimization);
+
+/// compare.json. A point of an alpha curve at which a rollout diverged is null; nothing else is.
+void write_comparisons(std::FILE* file, const std::vector<Comparison>& comparisons);
+
+}  // namespace nuno

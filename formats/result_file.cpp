@@ -1,0 +1,197 @@
+#include <nuno/result_file.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace nuno {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string on_one_line(const Json& value) {
+  // A name may come from a file's name, which need not be UTF-8.
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+int depth(const Json& value) {
+  int deepest = 0;
+  for (const Json& item : value) {
+    if (item.is_structured()) deepest = std::max(deepest, depth(item));
+  }
+  return deepest + (value.is_object() ? 2 : 1);
+}
+
+/// Prints a shape, or an object of numbers, on one line, and what holds several of them over
+/// several: a line of the file is one thing to look at or to compare.
+void print(std::FILE* file, const Json& value, std::size_t indent = 0) {
+  if (!value.is_structured() || depth(value) <= 2) {
+    fmt::print(file, "{}", on_one_line(value));
+    return;
+  }
+  const bool is_object = value.is_object();
+  fmt::print(file, "{}", is_object ? '{' : '[');
+  const char* separator = "\n";
+  for (const auto& item : value.items()) {
+    fmt::print(file, "{}{:{}}", separator, "", indent + 1);
+    if (is_object) fmt::print(file, "{}: ", on_one_line(item.key()));
+    print(file, item.value(), indent + 1);
+    separator = ",\n";
+  }
+  fmt::print(file, "\n{:{}}{}", "", indent, is_object ? '}' : ']');
+}
+
+Json to_json(const Points& points) {
+  Json array = Json::array();
+  for (Index i = 0; i < points.cols(); ++i) array.push_back({points(0, i), points(1, i)});
+  return array;
+}
+
+std::string_view word_for(OptimizeStatus status) {
+  return status == OptimizeStatus::converged ? "converged" : "budget";
+}
+
+Json to_json(const Optimization& optimization) {
+  const OptimizeSummary& summary = optimization.summary;
+  Json history = Json::array();
+  for (const Evaluation& evaluation : summary.history) {
+    // A diverged rollout has no error to note.
+    if (!std::isfinite(evaluation.error)) continue;
+    history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
+  }
+  Json result = {{"optimizer", optimization.optimizer},
+                 {"status", word_for(summary.status)},
+                 {"evaluations", summary.evaluations},
+                 {"seconds", summary.seconds}};
+  if (optimization.robust_error) result["robust_error"] = *optimization.robust_error;
+  result["history"] = history;
+  if (!optimization.trade_off.empty()) {
+    Json curve = Json::array();
+    for (const TradeOffPoint& point : optimization.trade_off) {
+      curve.push_back(
+          {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
+    }
+    result["trade_off"] = curve;
+  }
+  if (optimization.joint) {
+    const JointSearchSummary& joint = *optimization.joint;
+    Json stages = Json::array();
+    for (const JointStage& stage : joint.stages) {
+      stages.push_back({{"alphas", stage.gains.groups()}, {"error", stage.error}});
+    }
+    result["coefficients"] = {{"status", word_for(joint.status)},
+                              {"evaluations", joint.evaluations},
+                              {"seconds", joint.seconds},
+                              {"reason", joint.reason},
+                              {"stages", stages}};
+  }
+  if (optimization.refinement) {
+    const RefineSummary& refinement = *optimization.refinement;
+    Json aim_offset = Json::array();
+    for (const Points& offset : refinement.aim_offset) aim_offset.push_back(to_json(offset));
+    Json& told = result["refinement"];
+    told = {{"status", refinement.converged ? "converged" : "nearest"},
+            {"reason", refinement.reason},
+            {"rollouts", refinement.rollouts},
+            {"tangents", refinement.tangents},
+            {"seconds", refinement.seconds},
+            {"aim_offset", aim_offset}};
+    if (std::isfinite(refinement.error_before)) told["error_before"] = refinement.error_before;
+  }
+  return result;
+}
+
+/// Frames one by one: all of them as JSON at once take ten times their own memory.
+void print_frames(std::FILE* file, const Rollout& rollout) {
+  fmt::print(file, " \"frames\": {{\n  \"times\": {},\n  \"positions\": [",
+             on_one_line(rollout.frame_times));
+  const char* separator = "\n";
+  for (const Points& positions : rollout.frame_positions) {
+    fmt::print(file, "{}   {}", separator, on_one_line(to_json(positions)));
+    separator = ",\n";
+  }
+  fmt::print(file, "\n  ]\n }}");
+}
+
+Json to_json(const ComparisonRow& row) {
+  return {{"backend", row.backend},
+          {"launch_only_error", row.launch_only_error},
+          {"alpha", row.gain},
+          {"error", row.error.mean},
+          {"max_error", row.error.max},
+          {"centroid_error", row.error.centroid},
+          {"control_effort", row.control_effort},
+          {"max_strain", row.max_strain},
+          {"sensitivity", row.sensitivity},
+          {"evaluations", row.evaluations},
+          {"seconds", row.seconds},
+          {"error_with_the_other_alpha", row.error_with_the_other_gain}};
+}
+
+Json to_json(const Comparison& comparison) {
+  Json curve = {{"alpha", comparison.curve_gains}}, efforts;
+  for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
+    curve[comparison.rows[i].backend] = comparison.curve_errors[i];  // infinity becomes null
+    efforts[comparison.rows[i].backend] = comparison.curve_efforts[i];
+  }
+  curve["control_effort"] = efforts;
+  curve["sensitivity"] = comparison.curve_sensitivity;
+  curve["max_strain"] = comparison.curve_strain;
+  return {{"scene", comparison.scene},
+          {"rows", {to_json(comparison.rows[0]), to_json(comparison.rows[1])}},
+          {"shape_difference",
+           {{"at_alpha", comparison.rows[0].gain},
+            {"mean", comparison.shape_difference.mean},
+            {"max", comparison.shape_difference.max}}},
+          {"alpha_curve", curve}};
+}
+
+}  // namespace
+
+void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+                  const Rollout& rollout, double sensitivity,
+                  const std::optional<Optimization>& optimization) {
+  const Problem& problem = backend.problem();
+  Json head = {{"nuno_result", 1},
+               {"scene", scene},
+               {"backend", backend.name()},
+               {"status", "ok"},
+               {"alpha", rollout.gains.rest},
+               {"time_step", backend.time_step()},
+               {"steps", backend.steps()},
+               {"cloth_length", problem.cloth().size},
+               {"target_scale", problem.target_scale},
+               {"error",
+                {{"mean", rollout.error.mean},
+                 {"max", rollout.error.max},
+                 {"centroid", rollout.error.centroid},
+                 {"relative", rollout.error.mean / problem.cloth().size}}},
+               {"control_effort", rollout.control_effort},
+               {"max_strain", rollout.max_strain},
+               {"sensitivity", sensitivity}};
+  if (rollout.gains.count() > 1) head["alphas"] = rollout.gains.groups();
+  if (optimization) head["optimization"] = to_json(*optimization);
+  head["launch_velocity"] = to_json(rollout.launch_velocity);
+  head["target"] = to_json(problem.target);
+  head["final"] = to_json(rollout.final);
+
+  fmt::print(file, "{{\n");
+  for (const auto& item : head.items()) {
+    fmt::print(file, " {}: ", on_one_line(item.key()));
+    print(file, item.value(), 1);
+    fmt::print(file, ",\n");
+  }
+  print_frames(file, rollout);
+  fmt::print(file, "\n}}\n");
+}
+
+void write_comparisons(std::FILE* file, const std::vector<Comparison>& comparisons) {
+  Json scenes = Json::array();
+  for (const Comparison& comparison : comparisons) scenes.push_back(to_json(comparison));
+  print(file, {{"nuno_comparison", 1}, {"scenes", scenes}});
+  fmt::print(file, "\n");
+}
+
+}  // namespace nuno

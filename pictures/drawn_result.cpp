@@ -1,0 +1,178 @@
+#include "pictures/drawn_result.h"
+
+#include <fmt/format.h>
+
+#include <nuno/scene.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace nuno {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr int deepest = 16;  // a result has 5 levels
+// A flight may leave the bounds of its scene.
+constexpr double largest_number = 1e3 * largest_scene_number;
+
+/// A value of the file, which knows where it stands.
+struct Field {
+  const std::string& path;
+  std::string pointer;
+  const Json& value;
+
+  [[noreturn]] void refuse(const std::string& rule) const {
+    std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (text.size() > 60) text = text.substr(0, 57) + "...";
+    throw InputError(
+        fmt::format("{}: {}: {} {}", path, pointer.empty() ? "/" : pointer, text, rule));
+  }
+  Field child(const std::string& name) const {
+    if (!value.is_object()) refuse("is not an object");
+    const auto found = value.find(name);
+    if (found == value.end()) {
+      throw InputError(fmt::format("{}: {}/{}: is missing; it is required", path, pointer, name));
+    }
+    return {path, pointer + "/" + name, *found};
+  }
+  Field item(std::size_t i) const { return {path, fmt::format("{}/{}", pointer, i), value[i]}; }
+
+  const Field& list(std::size_t least) const {
+    if (!value.is_array()) refuse("is not a list");
+    if (value.size() < least) refuse(fmt::format("has not at least {} items", least));
+    return *this;
+  }
+  double number() const {
+    if (!value.is_number()) refuse("is not a number");
+    const auto result = value.get<double>();
+    if (!(std::abs(result) <= largest_number)) {
+      refuse(fmt::format("is not within ±{}", largest_number));
+    }
+    return result;
+  }
+  double not_negative() const {
+    const double result = number();
+    if (!(result >= 0)) refuse("is not >= 0");
+    return result;
+  }
+  double positive() const {
+    const double result = number();
+    if (!(result > 0)) refuse("is not > 0");
+    return result;
+  }
+  std::string text() const {
+    if (!value.is_string()) refuse("is not a string");
+    return value.get<std::string>();
+  }
+  /// A shape of `particles` points; of any number of them if that is 0.
+  Points points(Index particles) const {
+    list(2);
+    const auto count = static_cast<Index>(value.size());
+    if (particles > 0 && count != particles) {
+      throw InputError(fmt::format("{}: {}: {} points are not {}, as many as in /target", path,
+                                   pointer, count, particles));
+    }
+    Points result(2, count);
+    for (Index i = 0; i < count; ++i) {
+      const Field point = item(static_cast<std::size_t>(i));
+      if (!point.value.is_array() || point.value.size() != 2) point.refuse("is not a point [x, y]");
+      for (Index k = 0; k < 2; ++k) {
+        result(k, i) = point.item(static_cast<std::size_t>(k)).number();
+      }
+    }
+    return result;
+  }
+};
+
+Json read_json(const std::string& path) {
+  std::error_code ignored;
+  std::ifstream file(path, std::ios::binary);
+  // A directory opens, and then cannot be read.
+  if (!file || file.peek() == std::ifstream::traits_type::eof()) {
+    throw InputError(fmt::format("{}: /: cannot be read, or is empty", path));
+  }
+  bool too_deep = false;
+  const auto shallow = [&](int depth, Json::parse_event_t, Json&) {
+    too_deep = too_deep || depth > deepest;
+    return depth <= deepest;
+  };
+  Json json;
+  try {
+    json = Json::parse(file, shallow);
+  } catch (const Json::exception& error) {
+    const std::string what = error.what();
+    const auto colon = what.find("] ");
+    throw InputError(fmt::format("{}: /: not JSON: {}", path,
+                                 colon == std::string::npos ? what : what.substr(colon + 2)));
+  }
+  if (too_deep) {
+    throw InputError(fmt::format("{}: /: nests deeper than {} levels", path, deepest));
+  }
+  return json;
+}
+
+/// A picture is at least as large as its target: one that is too small leaves no room for ticks.
+void require_extent(const std::string& path, const Points& target) {
+  const double extent = (target.rowwise().maxCoeff() - target.rowwise().minCoeff()).maxCoeff();
+  if (!(extent >= smallest_scene_number &&
+        extent >= smallest_relative_length * target.cwiseAbs().maxCoeff())) {
+    throw InputError(
+        fmt::format("{}: /target: an extent of {} is not >= {} and {} of its distance from the "
+                    "origin",
+                    path, extent, smallest_scene_number, smallest_relative_length));
+  }
+}
+
+}  // namespace
+
+bool is_scene_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(256, '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return start.find("\"nuno_scene\"") != std::string::npos;
+}
+
+figures::Flight read_result(const std::string& path) {
+  const Json json = read_json(path);
+  const Field root{path, "", json};
+  if (const Field version = root.child("nuno_result"); version.value != 1) {
+    version.refuse("is not 1");
+  }
+  figures::Flight flight;
+  flight.scene = root.child("scene").text();
+  flight.backend = root.child("backend").text();
+  flight.gain = root.child("alpha").not_negative();
+  const Field cloth_length = root.child("cloth_length");
+  flight.cloth_length = cloth_length.positive();
+  if (!(flight.cloth_length >= smallest_scene_number)) {
+    cloth_length.refuse(fmt::format("is not >= {}", smallest_scene_number));
+  }
+  const Field error = root.child("error");
+  flight.error = error.child("mean").not_negative();
+  flight.max_error = error.child("max").not_negative();
+  flight.target = root.child("target").points(0);
+  require_extent(path, flight.target);
+  const Index particles = flight.target.cols();
+  (void)root.child("final").points(particles);
+
+  const Field frames = root.child("frames");
+  const Field times = frames.child("times").list(2);
+  const Field positions = frames.child("positions").list(2);
+  if (positions.value.size() != times.value.size()) {
+    throw InputError(fmt::format("{}: {}: {} frames are not {}, as many as in /frames/times", path,
+                                 positions.pointer, positions.value.size(), times.value.size()));
+  }
+  for (std::size_t i = 0; i < times.value.size(); ++i) {
+    const double time = times.item(i).not_negative();
+    if (i > 0 && !(time > flight.times.back())) {
+      times.item(i).refuse("is not later than the frame before");
+    }
+    flight.times.push_back(time);
+    flight.positions.push_back(positions.item(i).points(particles));
+  }
+  return flight;
+}
+
+}  // namespace nuno

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <nuno/backend.h>
+#include <nuno/rollout.h>
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pictures/plot.h"
+
+namespace nuno::figures {
+
+/// A throw, ready to be drawn; from a rollout that kept frames or from a result file.
+struct Flight {
+  std::string scene;
+  std::string backend;
+  double gain = 0;                ///< α [N/m]
+  double cloth_length = 0;        ///< L [m]
+  double error = 0;               ///< mean, at arrival [m]
+  double max_error = 0;           ///< of the worst particle [m]
+  Points target;                  ///< [2 × N], m
+  std::vector<double> times;      ///< of the frames, ascending, the last at arrival [s]
+  std::vector<Points> positions;  ///< [2 × N] each, m
+};
+
+Flight make_flight(const std::string& scene, const Backend& backend, const Rollout& rollout);
+
+/// The cloth at any time, between frames on the straight way, before and after them at rest.
+Points positions_at(const Flight& flight, double time);
+
+/// The styles of overlaid flights, in their order; they repeat after four.
+std::string_view series(std::size_t i);
+Marker series_marker(std::size_t i);
+
+struct FlightFigure {
+  std::string title;
+  std::string subtitle;
+  int ghosts = 5;      ///< poses between launch and arrival
+  bool plain = false;  ///< shapes alone: no axes, no text
+};
+
+/// The figure of these flights with a title, and a subtitle that tells their errors.
+FlightFigure captioned(const std::vector<Flight>& flights, bool plain);
+
+/// Flights over one another: initial shape, target, ghosts, centroid's path and final shape, and
+/// the arrival once more, enlarged.
+Drawing draw_flights(const std::vector<Flight>& flights, const FlightFigure& options);
+
+/// The moment `time` of the flights over their targets.
+Drawing draw_moment(const std::vector<Flight>& flights, double time, const FlightFigure& options);
+
+/// The flights in motion (SMIL), at `speed` times their own, with a rest at arrival.
+Drawing draw_motion(const std::vector<Flight>& flights, double speed, const FlightFigure& options);
+
+inline constexpr double rest_at_arrival = 1.5;  ///< of motion and films [s]
+
+double last_arrival(const std::vector<Flight>& flights);
+
+/// The name that an engine has for people.
+std::string engine_name(std::string_view backend);
+
+}  // namespace nuno::figures

@@ -1,0 +1,193 @@
+#include "studio/answers.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <nuno/scene_file.h>
+#include <nuno/trade_off.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <iterator>
+
+#include <nuno/conditioning.h>
+#include <nuno/progress.h>
+#include "studio/flight.h"
+#include "studio/throw.h"
+
+namespace nuno::studio {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Clock = std::chrono::steady_clock;
+
+std::string dump(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+void append(std::string& text, const Points& points) {
+  text += '[';
+  for (Index i = 0; i < points.cols(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{}[{:.7g},{:.7g}]", i ? "," : "", points(0, i),
+                   points(1, i));
+  }
+  text += ']';
+}
+
+void append(std::string& text, const std::vector<Points>& shapes) {
+  text += '[';
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (i > 0) text += ',';
+    append(text, shapes[i]);
+  }
+  text += ']';
+}
+
+Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
+  Json history = Json::array();
+  for (const Evaluation& evaluation : summary.history) {
+    if (!std::isfinite(evaluation.error)) continue;
+    history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
+  }
+  return {{"optimizer", optimizer},
+          {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
+          {"alpha", summary.gain},
+          {"evaluations", summary.evaluations},
+          {"seconds", summary.seconds},
+          {"reason", summary.reason},
+          {"history", history}};
+}
+
+Json to_json(const RefineSummary& refinement) {
+  Points at_arrival = Points::Zero(2, refinement.flight.final.cols());
+  for (const Points& offset : refinement.aim_offset) at_arrival += offset;
+  Json result = {{"status", refinement.converged ? "converged" : "nearest"},
+                 {"largest_offset", at_arrival.colwise().norm().maxCoeff()},
+                 {"rollouts", refinement.rollouts},
+                 {"tangents", refinement.tangents},
+                 {"seconds", refinement.seconds},
+                 {"reason", refinement.reason}};
+  if (std::isfinite(refinement.error_before)) result["error_before"] = refinement.error_before;
+  return result;
+}
+
+/// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.
+std::string drawable(const Throw& done, const std::string& optimizer, const Flight& frames,
+                     Clock::time_point start) {
+  const Backend& backend = *done.backend;
+  const Rollout& flight = done.flight;
+  const Problem& problem = backend.problem();
+  Json head = {{"scene", done.file.scene.name},
+               {"backend", backend.name()},
+               {"status", "ok"},
+               {"alpha", flight.gains.rest},
+               {"time_step", backend.time_step()},
+               {"steps", backend.steps()},
+               {"cloth_length", problem.cloth().size},
+               {"target_scale", problem.target_scale},
+               {"error",
+                {{"mean", flight.error.mean},
+                 {"max", flight.error.max},
+                 {"centroid", flight.error.centroid},
+                 {"relative", flight.error.mean / problem.cloth().size}}},
+               {"control_effort", flight.control_effort},
+               {"effort_unit", effort_unit(problem)},
+               {"max_strain", flight.max_strain}};
+  if (done.found) {
+    OptimizeSummary shown = *done.found;
+    shown.history.insert(shown.history.end(), done.between.begin(), done.between.end());
+    std::ranges::sort(shown.history, {}, &Evaluation::gain);
+    head["optimization"] = to_json(shown, optimizer);
+  }
+  if (done.refined) head["refinement"] = to_json(*done.refined);
+  std::string text = dump(head);
+  text.pop_back();  // the brace: the shapes follow
+  text += ",\"initial\":";
+  append(text, problem.cloth().initial);
+  text += ",\"target\":";
+  append(text, problem.target);
+  text += ",\"final\":";
+  append(text, flight.final);
+  text += ",\"frames\":{\"times\":" + dump(frames.times) + ",\"positions\":";
+  append(text, frames.positions);
+  text += ",\"forces\":";
+  append(text, frames.forces);
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  fmt::format_to(std::back_inserter(text), "}},\"seconds\":{:.6g}}}", seconds);
+  return text;
+}
+
+Answer throw_answer(const Request& request, std::optional<double> alpha) {
+  const auto start = Clock::now();
+  const Options& options = request.options;
+  const Throw done = throw_cloth(request, alpha, KeptFrames::none);
+  if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
+  Flight frames;
+  if (options.frames > 0) {
+    frames = fly(*done.backend, done.flight.gains, options.frames, options.after, request.turn);
+  }
+  return {.body = drawable(done, options.optimizer, frames, start)};
+}
+
+/// How many gains a trade-off tries: fewer of a scene whose rollouts take long.
+Index gains_of_trade_off(const Backend& backend) {
+  const double most_work = backend.name() == "native" ? 1e9 : 5e7;
+  return static_cast<Index>(std::clamp(most_work / work_of(backend), 8.0, 64.0));
+}
+
+}  // namespace
+
+Answer refusal(int status, const std::string& message) {
+  return {.status = status, .body = dump({{"error", message}})};
+}
+
+Answer diverged_answer(const SceneFile& file, const Backend& backend, const Rollout& flight) {
+  return refusal(422, divergence_message(file.path, backend, flight));
+}
+
+Answer about_answer(const Request&) {
+  // A scene of defaults; the required fields are left out of it.
+  Json defaults = Json::parse(nuno::to_json(ChainScene{}));
+  for (const char* required : {"name", "arrival_time", "initial", "target"}) {
+    defaults.erase(required);
+  }
+  return {.body = dump({{"version", NUNO_VERSION},
+                        {"backends", backend_names},
+                        {"optimizers", optimizer_names},
+                        {"defaults", defaults}})};
+}
+
+Answer progress_answer(const Request& request) {
+  return {.body = dump({{"progress", request.turn.progress()}})};
+}
+
+Answer scene_answer(const Request& request) {
+  return {.body = nuno::to_json(read_scene(request).scene)};
+}
+
+Answer optimize_answer(const Request& request) { return throw_answer(request, std::nullopt); }
+
+Answer simulate_answer(const Request& request) {
+  return throw_answer(request, request.options.alpha.value_or(0));
+}
+
+Answer trade_off_answer(const Request& request) {
+  const SceneFile file = read_scene(request);
+  const auto backend = make_backend(request.options.backend, file);
+  require_quick(file, *backend, request.options);
+  request.turn.check();
+  Json points = Json::array();
+  for (const TradeOffPoint& point :
+       trade_off(*backend, gains_of_trade_off(*backend), [&] { request.turn.check(); })) {
+    points.push_back(
+        {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
+  }
+  return {.body = dump({{"scene", file.scene.name},
+                        {"backend", backend->name()},
+                        {"cloth_length", backend->problem().cloth().size},
+                        {"effort_unit", effort_unit(backend->problem())},
+                        {"trade_off", points}})};
+}
+
+}  // namespace nuno::studio

@@ -1,0 +1,123 @@
+#include "studio/downloads.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <optional>
+#include <vector>
+
+#include <nuno/comparison.h>
+#include <nuno/conditioning.h>
+#include <nuno/output.h>
+#include <nuno/progress.h>
+#include <nuno/result_file.h>
+#include <nuno/scene_file.h>
+#include "pictures/film.h"
+#include "pictures/flight_figure.h"
+#include "pictures/report.h"
+#include "studio/throw.h"
+
+namespace nuno::studio {
+namespace {
+
+constexpr double longest_film = 10;  // seconds of flight
+
+/// Calls `write` with a FILE that ends up in a string.
+template <typename Write>
+std::string printed(const Write& write) {
+  char* text = nullptr;
+  std::size_t size = 0;
+  std::FILE* const file = open_memstream(&text, &size);
+  if (!file) throw std::bad_alloc();
+  try {
+    write(file);
+  } catch (...) {
+    std::fclose(file);
+    std::free(text);
+    throw;
+  }
+  const bool whole = std::fclose(file) == 0;
+  const std::unique_ptr<char, decltype(&std::free)> owner(text, std::free);
+  if (!whole) throw std::bad_alloc();
+  return {text, size};
+}
+
+std::string contents(std::FILE* file, const std::string& name) {
+  std::rewind(file);
+  std::string text;
+  std::array<char, 65536> part;
+  while (const std::size_t size = std::fread(part.data(), 1, part.size(), file)) {
+    text.append(part.data(), size);
+  }
+  if (std::ferror(file)) throw OutputError(name + ": cannot be read back");
+  return text;
+}
+
+}  // namespace
+
+Answer result_answer(const Request& request) {
+  const Throw done = throw_cloth(request, request.options.alpha, KeptFrames::of_scene);
+  if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
+  std::optional<Optimization> optimization;
+  if (done.found) optimization = Optimization{request.options.optimizer, *done.found};
+  if (done.refined) optimization->refinement = done.refined;
+  return {.body = printed([&](std::FILE* file) {
+            write_result(file, done.file.scene.name, *done.backend, done.flight,
+                         bounded_sensitivity(*done.backend, done.flight), optimization);
+          }),
+          .file_name = "result.json"};
+}
+
+Answer report_answer(const Request& request) {
+  const SceneFile file = read_scene(request);
+  const auto native = make_backend("native", file);
+  const auto box2d = make_backend("box2d", file);
+  require_quick(file, *native, request.options);
+  require_quick(file, *box2d, request.options);
+  const Comparison comparison = compare_engines(
+      file.scene.name, *native, *box2d,
+      {.objective_of = [&](const Backend& backend) { return cancellable(backend, request.turn); },
+       .before_rollout = [&] { request.turn.check(); }});
+  if (comparison.divergence) {
+    const auto& [backend, flight] = *comparison.divergence;
+    return diverged_answer(file, backend == "native" ? *native : *box2d, flight);
+  }
+  return {.type = "text/html; charset=utf-8",
+          .body = report_page({make_report_scene(comparison, *native, *box2d)}),
+          .file_name = "report.html"};
+}
+
+Answer film_answer(const Request& request) {
+  if (const SceneFile file = read_scene(request); file.scene.arrival_time > longest_film) {
+    throw InputError(
+        fmt::format("{}: /arrival_time: {} is not <= {}, the longest film of the studio", file.path,
+                    file.scene.arrival_time, longest_film));
+  }
+  const std::string name = "film.mp4";
+  require_film_maker(name);
+  const Throw done = throw_cloth(request, request.options.alpha, KeptFrames::of_scene);
+  if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
+  // A file without a name: nothing of it stays, however the program ends.
+  const File film(std::tmpfile());
+  if (!film) throw OutputError(name + ": cannot be written: " + std::strerror(errno));
+  request.turn.check();
+  const std::vector flights = {
+      figures::make_flight(done.file.scene.name, *done.backend, done.flight)};
+  write_film(flights, figures::captioned(flights, false),
+             {.name = name,
+              .progress =
+                  [&](double share) {
+                    request.turn.check();
+                    request.turn.report(share);
+                  }},
+             film.get());
+  return {.type = "video/mp4", .body = contents(film.get(), name), .file_name = name};
+}
+
+}  // namespace nuno::studio

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nuno/backend.h>
+
+#include <vector>
+
+#include "studio/cancellation.h"
+
+namespace nuno::studio {
+
+/// A flight to be looked at: frames with the control forces, and how it goes on after arrival.
+struct Flight {
+  std::vector<double> times;      ///< [s]
+  std::vector<Points> positions;  ///< [2 × N] each, m
+  std::vector<Points> forces;     ///< of the shape control [2 × N] each, N; none after arrival
+};
+
+/// The flight that `rollout` measures, at `frames` equal intervals until arrival, and for `after`
+/// seconds more in which nothing controls the cloth. Ends early where it diverges.
+Flight fly(const Backend& backend, const Gains& gains, Index frames, double after,
+           const Turn& turn);
+
+}  // namespace nuno::studio
