@@ -25,7 +25,7 @@ void gradient(Report& report, const Options& options) {
   const std::vector<double> gains = spread_gains(scale, 64);
   const std::vector<double> errors = native->errors(gains);
   const std::vector<ErrorSample> samples = native->error_samples(gains);
-  double value_off = 0, slope_off = 0;
+  double value_off = 0, derivative_off = 0;
   for (std::size_t i = 1; i < gains.size(); ++i) {
     // The truncation of the central difference is of the order 1e-8, its rounding 1e-10.
     const double delta = 1e-4 * gains[i];
@@ -33,13 +33,15 @@ void gradient(Report& report, const Options& options) {
     const std::vector<double> beside = native->errors(around);
     const double difference = (beside[1] - beside[0]) / (2 * delta);
     const double unit = problem.cloth().size / gains[i];
-    slope_off = std::max(slope_off, std::abs(samples[i].slopes[0].error - difference) / unit);
+    derivative_off =
+        std::max(derivative_off, std::abs(samples[i].derivatives[0].error - difference) / unit);
     value_off = std::max(value_off, std::abs(samples[i].error - errors[i]) / problem.cloth().size);
   }
   report.check(value_off < 1e-9,
                fmt::format("E beside its derivative is E to {:.0e} of the length", value_off));
-  report.check(slope_off < 1e-5,
-               fmt::format("α·dE/dα is the central difference to {:.0e} of the length", slope_off));
+  report.check(
+      derivative_off < 1e-5,
+      fmt::format("α·dE/dα is the central difference to {:.0e} of the length", derivative_off));
 
   const auto value = [&] {
     const std::vector<double> found = native->errors(gains);
@@ -47,7 +49,8 @@ void gradient(Report& report, const Options& options) {
   };
   const auto both = [&] {
     double sum = 0;
-    for (const ErrorSample& sample : native->error_samples(gains)) sum += sample.slopes[0].error;
+    for (const ErrorSample& sample : native->error_samples(gains))
+      sum += sample.derivatives[0].error;
     return sum;
   };
   const std::array<Run, 2> runs = {Run{both}, Run{value}};

@@ -102,8 +102,8 @@ double PlainChain::error(double gain) const {
 
   double sum = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 miss = x[i] - column(problem_.target, i);
-    sum += std::sqrt(dot(miss, miss));
+    const Vec2 residual = x[i] - column(problem_.target, i);
+    sum += std::sqrt(dot(residual, residual));
   }
   return std::isfinite(sum) ? sum / static_cast<double>(n)
                             : std::numeric_limits<double>::infinity();

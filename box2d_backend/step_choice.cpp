@@ -15,7 +15,7 @@ namespace {
 
 // The gap of the end shapes to the native chain at a 4e-5 s step, at the native best gain, over the
 // cloth's length: median and 95th percentile of the 27 of 60 random scenes (32 particles, t₀ of 0.4
-// to 2 s, three decades of hinge stiffness) where a disturbance grows less than tenfold; and the
+// to 2 s, three decades of hinge stiffness) where a perturbation grows less than tenfold; and the
 // time of one flight:
 //     iterations         8                        16                       32
 //     t₀/1000   6.9e-5, 4.9e-4, 14 ms    5.9e-5, 3.1e-4, 20 ms    6.1e-5, 3.9e-4,  31 ms

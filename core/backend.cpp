@@ -22,12 +22,12 @@ std::vector<double> Backend::do_errors(std::span<const Gains> gains, const Point
 }
 
 std::vector<ErrorSample> Backend::do_error_samples(std::span<const Gains>) const {
-  assert(!"this engine has no slopes");
+  assert(!"this engine has no derivatives");
   return {};
 }
 
-FlightTangent Backend::do_flight_tangent(double, const AimDirections&) const {
-  assert(!"this engine has no tangent");
+RolloutJacobian Backend::do_jacobian(double, const CorrectionDirections&) const {
+  assert(!"this engine has no jacobian");
   return {};
 }
 

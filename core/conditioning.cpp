@@ -14,7 +14,7 @@ bool diverged(const Rollout& rollout) {
 }
 
 double bounded_sensitivity(const Backend& backend, const Rollout& flight) {
-  return std::min(sensitivity(backend, flight), 1 / backend.smallest_disturbance());
+  return std::min(sensitivity(backend, flight), 1 / backend.smallest_perturbation());
 }
 
 std::string fragility(double sensitivity) {

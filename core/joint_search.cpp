@@ -22,7 +22,7 @@ class LogObjective {
   struct Point {
     Vector x;
     double error = 0;
-    Vector slope;  ///< dE/dx
+    Vector derivative;  ///< dE/dx
   };
 
   Gains gains(const Vector& x) const {
@@ -40,9 +40,9 @@ class LogObjective {
   }
   Vector within(const Vector& x) const { return x.cwiseMax(lowest_).cwiseMin(highest_); }
 
-  /// Whether a bound keeps x from going on against its slope.
-  bool is_held(double x, double slope) const {
-    return (x <= lowest_ && slope > 0) || (x >= highest_ && slope < 0);
+  /// Whether a bound keeps x from going on against its derivative.
+  bool is_held(double x, double derivative) const {
+    return (x <= lowest_ && derivative > 0) || (x >= highest_ && derivative < 0);
   }
 
   std::vector<double> errors(const std::vector<Vector>& places) {
@@ -61,7 +61,7 @@ class LogObjective {
       const ErrorSample found = objective_.samples({&here, 1}).front();
       point.error = found.error;
       for (Index k = 0; k < x.size(); ++k) {
-        point.slope[k] = std::exp(x[k]) * found.slopes[static_cast<std::size_t>(k)].error;
+        point.derivative[k] = std::exp(x[k]) * found.derivatives[static_cast<std::size_t>(k)].error;
       }
       return point;
     }
@@ -79,7 +79,7 @@ class LogObjective {
     point.error = found.front();
     for (Index k = 0; k < x.size(); ++k) {
       const auto behind = static_cast<std::size_t>(2 * k + 1);
-      point.slope[k] =
+      point.derivative[k] =
           (found[behind + 1] - found[behind]) / (around[behind + 1][k] - around[behind][k]);
     }
     return point;
@@ -101,30 +101,30 @@ class InverseHessian {
   bool is_known() const { return matrix_.size() > 0; }
   void forget() { matrix_.resize(0, 0); }
 
-  /// −H·slope on the axes that no bound holds; the steepest descent of length ½ until a step is
-  /// known.
+  /// −H·derivative on the axes that no bound holds; the steepest descent of length ½ until a step
+  /// is known.
   Vector direction(const LogObjective& objective, const Point& at) const {
-    Vector slope = at.slope;
-    for (Index k = 0; k < slope.size(); ++k) {
-      if (objective.is_held(at.x[k], slope[k])) slope[k] = 0;
+    Vector derivative = at.derivative;
+    for (Index k = 0; k < derivative.size(); ++k) {
+      if (objective.is_held(at.x[k], derivative[k])) derivative[k] = 0;
     }
-    Vector result = -slope;
+    Vector result = -derivative;
     if (is_known()) {
-      result = -(matrix_ * slope);
-      for (Index k = 0; k < slope.size(); ++k) {
-        if (slope[k] == 0) result[k] = 0;
+      result = -(matrix_ * derivative);
+      for (Index k = 0; k < derivative.size(); ++k) {
+        if (derivative[k] == 0) result[k] = 0;
       }
     }
     constexpr double first_move = 0.5, largest_move = 2;  // in log α
     const double size = result.norm();
-    if (!(size > 0)) return Vector::Zero(slope.size());
+    if (!(size > 0)) return Vector::Zero(derivative.size());
     if (!is_known()) return first_move / size * result;
     return std::min(1.0, largest_move / size) * result;
   }
 
   void learn(const Point& from, const Point& to) {
     const Vector step = to.x - from.x;
-    const Vector change = to.slope - from.slope;
+    const Vector change = to.derivative - from.derivative;
     const double curvature = step.dot(change);
     if (!(curvature > 1e-8 * step.norm() * change.norm())) return;
     const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(step.size(), step.size());
@@ -147,7 +147,7 @@ bool descend(LogObjective& objective, const JointSearchOptions& options, const V
   bool out_of_rounds = true;
   for (Index round = 0; round < options.rounds; ++round) {
     out_of_rounds = false;
-    if (!std::isfinite(here.error) || !here.slope.allFinite()) break;
+    if (!std::isfinite(here.error) || !here.derivative.allFinite()) break;
     const Vector direction = hessian.direction(objective, here);
     if (direction.isZero(0)) break;
     std::vector<Vector> places;
@@ -213,7 +213,7 @@ std::vector<Vector> starts_from(LogObjective& objective, const JointSearchOption
 JointObjective joint_objective(const Backend& backend) {
   JointObjective result;
   result.errors = [&backend](std::span<const Gains> gains) { return backend.errors(gains); };
-  if (backend.has_slopes()) {
+  if (backend.has_derivatives()) {
     result.samples = [&backend](std::span<const Gains> gains) {
       return backend.error_samples(gains);
     };

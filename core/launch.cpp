@@ -125,7 +125,7 @@ Points launch(const Backend& backend) {
   if (motion.moves()) {
     velocities = motion.velocity().colwise() + cloth.mass_center(velocities);
   } else {
-    velocities += motion.velocity();  // of what it aims aside
+    velocities += motion.velocity();  // of the correction
   }
   return problem.launch == Launch::inextensible ? without_stretching(problem, velocities)
                                                 : velocities;

@@ -39,7 +39,7 @@ class Counter {
 };
 
 /// dE/dα by central differences, one-sided at α = 0 (second order in δ both times).
-double slope(Counter& objective, double gain, double error, double delta) {
+double central_difference(Counter& objective, double gain, double error, double delta) {
   if (gain >= delta) {
     const std::array around = {gain - delta, gain + delta};
     const std::vector<double> errors = objective.errors(around);
@@ -55,7 +55,7 @@ double slope(Counter& objective, double gain, double error, double delta) {
 Objective objective(const Backend& backend) {
   Objective result;
   result.errors = [&backend](std::span<const double> gains) { return backend.errors(gains); };
-  if (backend.has_slopes()) {
+  if (backend.has_derivatives()) {
     result.samples = [&backend](std::span<const double> gains) {
       return backend.error_samples(gains);
     };
@@ -92,7 +92,7 @@ OptimizeSummary steepest_descent(const Objective& objective,
   while (counter.count() < options.largest_evaluations) {
     const double unit = summary.gain + objective.gain_scale;
     const double derivative =
-        slope(counter, summary.gain, summary.error, options.difference * unit);
+        central_difference(counter, summary.gain, summary.error, options.difference * unit);
     if (!std::isfinite(derivative)) {
       converged("the rollouts beside this gain diverge");
       break;
@@ -111,7 +111,7 @@ OptimizeSummary steepest_descent(const Objective& objective,
       move = std::abs(gain - summary.gain);
       if (move <= options.gain_tolerance * unit) break;
       const double error = counter.error(gain);
-      // Armijo: a step that falls by a tenth of what the slope promises is taken.
+      // Armijo: a step that falls by a tenth of what the derivative predicts is taken.
       if (error < summary.error - 0.1 * std::abs(derivative) * move) {
         summary.gain = gain;
         summary.error = error;
@@ -201,9 +201,9 @@ struct Bracket {
     // d/du = 2u·d/dα
     const double leaving = 2 * left->u * s * t * t * width();
     const double arriving = -2 * right->u * s * s * t * width();
-    return (from * left->sample.miss + to * right->sample.miss +
-            leaving * left->sample.slopes.front().miss +
-            arriving * right->sample.slopes.front().miss)
+    return (from * left->sample.residual + to * right->sample.residual +
+            leaving * left->sample.derivatives.front().residual +
+            arriving * right->sample.derivatives.front().residual)
         .colwise()
         .norm()
         .mean();
@@ -211,8 +211,8 @@ struct Bracket {
 };
 
 /// Searches between `gains`, which ascend. Whether it came to an end before the rounds ran out.
-bool search_with_slopes(const Objective& objective, std::span<const double> gains,
-                        const GlobalSearchOptions& options, OptimizeSummary& summary) {
+bool search_with_derivatives(const Objective& objective, std::span<const double> gains,
+                             const GlobalSearchOptions& options, OptimizeSummary& summary) {
   double best = std::numeric_limits<double>::infinity();
   const auto sample = [&](std::span<const double> at) {
     std::vector<ErrorSample> samples = objective.samples(at);
@@ -287,7 +287,7 @@ bool search_warm(const Objective& objective, const GlobalSearchOptions& options,
   const double start = options.warm_start.value_or(0);
   if (!objective.samples || !(start > 0 && start < objective.largest_gain)) return false;
   const std::vector<double> gains = gains_around(objective, start);
-  search_with_slopes(objective, gains, options, summary);
+  search_with_derivatives(objective, gains, options, summary);
   const double gain = lowest(summary, objective.negligible).gain;
   return gain > gains.front() && gain < gains.back();
 }
@@ -338,7 +338,7 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
     const std::vector<double> gains = scan_gains(objective, options, scan);
     bool done = true;
     if (objective.samples) {
-      done = search_with_slopes(objective, gains, options, summary);
+      done = search_with_derivatives(objective, gains, options, summary);
     } else {
       search_by_values(objective, gains, options, summary);
     }

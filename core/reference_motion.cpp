@@ -3,9 +3,9 @@
 namespace nuno {
 namespace {
 
-AimShares aim_shares_at(double time) {
-  static_assert(aim_powers == std::array{1, 6, 36, 216}, "each is six times the one before");
-  AimShares shares;
+CorrectionShares correction_shares_at(double time) {
+  static_assert(correction_powers == std::array{1, 6, 36, 216}, "each is six times the one before");
+  CorrectionShares shares;
   double share = time;
   for (double& each : shares) {
     each = share;
@@ -22,11 +22,11 @@ ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
       time_step_(time_step),
       step_time_(time_step / problem.arrival_time),
       relative_mass_(problem.cloth().relative_mass) {
-  for (const Points& offset : problem.aim_offset) {
+  for (const Points& offset : problem.reference_correction) {
     offsets_.push_back(shape_of(offset, relative_mass_));
   }
-  for (std::size_t k = 0; k < aim_powers.size(); ++k) {
-    aim_rates_[k] = aim_powers[k] == 1 ? 1 / problem.arrival_time : 0;
+  for (std::size_t k = 0; k < correction_powers.size(); ++k) {
+    correction_rates_[k] = correction_powers[k] == 1 ? 1 / problem.arrival_time : 0;
   }
   if (!moves_) {
     way_ = shape_of(problem.target, relative_mass_);
@@ -39,16 +39,16 @@ ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
     velocity_ = morph.velocity_at_start();
   }
   place_shape();
-  add_aim(aim_rates_, velocity_);
+  add_correction(correction_rates_, velocity_);
 }
 
 void ReferenceMotion::advance() {
   time_ += step_time_;
-  const AimShares shares = aim_shares_at(time_);
+  const CorrectionShares shares = correction_shares_at(time_);
   for (std::size_t k = 0; k < shares.size(); ++k) {
-    aim_rates_[k] = (shares[k] - aim_shares_[k]) / time_step_;
+    correction_rates_[k] = (shares[k] - correction_shares_[k]) / time_step_;
   }
-  aim_shares_ = shares;
+  correction_shares_ = shares;
   if (!moves_ && offsets_.empty()) return;
 
   const Points before = shape_;
@@ -66,10 +66,10 @@ void ReferenceMotion::place_shape() {
   } else {
     shape_ = std::get<Points>(way_);
   }
-  add_aim(aim_shares_, shape_);
+  add_correction(correction_shares_, shape_);
 }
 
-void ReferenceMotion::add_aim(const AimShares& shares, Points& to) const {
+void ReferenceMotion::add_correction(const CorrectionShares& shares, Points& to) const {
   for (std::size_t k = 0; k < offsets_.size(); ++k) to += shares[k] * offsets_[k];
 }
 

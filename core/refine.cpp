@@ -22,13 +22,13 @@ namespace {
 constexpr const char* arrived = "arrived within the tolerance";
 constexpr const char* too_much_effort = "no flight of so little effort was found";
 
-/// Shapes to aim aside by: cosines along the chain, of few waves where they come early and must not
-/// stretch the cloth on its way, and all of them at the last, where it has to arrive.
-AimDirections aim_directions(Index particles) {
-  constexpr std::array<Index, aim_powers.size()> most_waves = {8, 8, 16, 1'000'000};
-  AimDirections directions;
+/// Shapes to correct the reference by: cosines along the chain, of few waves where they come early
+/// and must not stretch the cloth on its way, and all of them at the last, where it has to arrive.
+CorrectionDirections correction_directions(Index particles) {
+  constexpr std::array<Index, correction_powers.size()> most_waves = {8, 8, 16, 1'000'000};
+  CorrectionDirections directions;
   std::vector<Vector> shapes;
-  for (std::size_t power = 0; power < aim_powers.size(); ++power) {
+  for (std::size_t power = 0; power < correction_powers.size(); ++power) {
     for (Index wave = 1; wave <= std::min(most_waves[power], particles - 1); ++wave) {
       for (const Index row : {0, 1}) {
         Points shape = Points::Zero(2, particles);
@@ -48,7 +48,7 @@ AimDirections aim_directions(Index particles) {
   return directions;
 }
 
-std::vector<Points> moved(std::vector<Points> offset, const AimDirections& directions,
+std::vector<Points> moved(std::vector<Points> offset, const CorrectionDirections& directions,
                           const Vector& step) {
   for (Index d = 0; d < step.size(); ++d) {
     Points& of_power =
@@ -58,22 +58,23 @@ std::vector<Points> moved(std::vector<Points> offset, const AimDirections& direc
   return offset;
 }
 
-/// The flight in a neighbourhood: forces F + F'Δ, positions at arrival by X'. Every step minimises
-///     |F + F'(Δ + δ)|² + w²·|miss − X'δ|² + μ²·|δ|²,
+/// The flight in a local model: forces F + F'Δ, positions at arrival by X'. Every step minimises
+///     |F + F'(Δ + δ)|² + w²·|residual − X'δ|² + μ²·|δ|²,
 /// so, with H = F'ᵀF' + μ²I and g = F'ᵀ(F + F'Δ),
-///     δ = H⁻¹(X'ᵀλ − g),   (X'H⁻¹X'ᵀ + w⁻²)·λ = miss + X'H⁻¹g,
+///     δ = H⁻¹(X'ᵀλ − g),   (X'H⁻¹X'ᵀ + w⁻²)·λ = residual + X'H⁻¹g,
 /// which stays well-conditioned as w grows and arrival becomes a condition. A landing lets the
-/// forces be, g = 0, and takes away the miss with the least change to them and to the aim.
-class Neighbourhood {
+/// forces be, g = 0, and takes away the residual with the least change to them and to the
+/// correction.
+class LocalModel {
  public:
-  explicit Neighbourhood(FlightTangent tangent)
-      : tangent_(std::move(tangent)),
-        hessian_(Eigen::MatrixXd::Zero(tangent_.arrival.cols(), tangent_.arrival.cols())),
-        path_(Vector::Zero(tangent_.arrival.cols())) {
-    hessian_.selfadjointView<Eigen::Lower>().rankUpdate(tangent_.forces_tangent.transpose());
+  explicit LocalModel(RolloutJacobian jacobian)
+      : jacobian_(std::move(jacobian)),
+        hessian_(Eigen::MatrixXd::Zero(jacobian_.arrival.cols(), jacobian_.arrival.cols())),
+        path_(Vector::Zero(jacobian_.arrival.cols())) {
+    hessian_.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.forces_jacobian.transpose());
   }
 
-  bool is_finite() const { return hessian_.allFinite() && tangent_.arrival.allFinite(); }
+  bool is_finite() const { return hessian_.allFinite() && jacobian_.arrival.allFinite(); }
   bool is_fresh() const { return path_.isZero(0); }
 
   /// `damping` is μ over the size of F'.
@@ -81,41 +82,41 @@ class Neighbourhood {
     Eigen::MatrixXd damped = hessian_;
     damped.diagonal().array() += damping * damping * hessian_.diagonal().maxCoeff();
     factor_.compute(damped);
-    across_ = factor_.solve(tangent_.arrival.transpose());
-    reach_ = tangent_.arrival * across_;
+    across_ = factor_.solve(jacobian_.arrival.transpose());
+    reach_ = jacobian_.arrival * across_;
   }
 
-  Vector step(const Vector& miss, double weight) const {
-    const Vector down = factor_.solve(tangent_.forces_tangent.transpose() * forces(path_));
+  Vector step(const Vector& residual, double weight) const {
+    const Vector down = factor_.solve(jacobian_.forces_jacobian.transpose() * forces(path_));
     Eigen::MatrixXd system = reach_;
     system.diagonal().array() += 1 / (weight * weight);
-    const Vector pull = system.ldlt().solve(miss + tangent_.arrival * down);
+    const Vector pull = system.ldlt().solve(residual + jacobian_.arrival * down);
     return across_ * pull - down;
   }
 
-  Vector landing(const Vector& miss) const {
+  Vector landing(const Vector& residual) const {
     constexpr double rounding = 1e-14;  // no offset moves the centroid
     Eigen::MatrixXd system = reach_;
     system.diagonal().array() += rounding * reach_.diagonal().maxCoeff();
-    return across_ * system.ldlt().solve(miss);
+    return across_ * system.ldlt().solve(residual);
   }
 
   /// By how much a step lets the objective fall.
-  double promise(const Vector& miss, double weight, const Vector& step) const {
+  double predicted_reduction(const Vector& residual, double weight, const Vector& step) const {
     const auto cost = [&](const Vector& path, const Vector& left) {
       return forces(path).squaredNorm() + weight * weight * left.squaredNorm();
     };
-    return cost(path_, miss) - cost(path_ + step, miss - tangent_.arrival * step);
+    return cost(path_, residual) - cost(path_ + step, residual - jacobian_.arrival * step);
   }
 
   void go(const Vector& step) { path_ += step; }
 
  private:
   Vector forces(const Vector& path) const {
-    return tangent_.forces + tangent_.forces_tangent * path;
+    return jacobian_.forces + jacobian_.forces_jacobian * path;
   }
 
-  FlightTangent tangent_;
+  RolloutJacobian jacobian_;
   Eigen::MatrixXd hessian_;             // F'ᵀF', lower half
   Vector path_;                         // Δ
   Eigen::LLT<Eigen::MatrixXd> factor_;  // of H
@@ -125,7 +126,7 @@ class Neighbourhood {
 
 }  // namespace
 
-double following_gain(const Backend& backend) {
+double tracking_gain(const Backend& backend) {
   // √300 = 17 rad until arrival: what the launch leaves behind has died away by then, and nothing
   // that the engines see differently grows.
   constexpr double gain_scales = 300;
@@ -138,50 +139,50 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
   const auto start = std::chrono::steady_clock::now();
   const Index particles = problem.cloth().particles();
   const double length = problem.cloth().size;
-  Problem aimed = problem;
-  if (aimed.aim_offset.empty()) {
-    aimed.aim_offset.assign(aim_powers.size(), Points::Zero(2, particles));
+  Problem corrected = problem;
+  if (corrected.reference_correction.empty()) {
+    corrected.reference_correction.assign(correction_powers.size(), Points::Zero(2, particles));
   }
 
   RefineSummary summary;
-  summary.aim_offset = aimed.aim_offset;
-  summary.flight = rollout(*make(aimed), gain);
+  summary.reference_correction = corrected.reference_correction;
+  summary.flight = rollout(*make(corrected), gain);
   summary.rollouts = 1;
   summary.error_before = summary.flight.error.mean;
   summary.reason = fmt::format("{} rounds were not enough", options.rounds);
 
-  const AimDirections directions = aim_directions(particles);
-  const auto miss_of = [&](const Rollout& flight) -> Vector {
+  const CorrectionDirections directions = correction_directions(particles);
+  const auto residual_of = [&](const Rollout& flight) -> Vector {
     return (problem.target - flight.final).reshaped();
   };
   // w = weight/(L·√N): an rms error of L counts as much as an effort of `weight`.
   const double unit = 1 / (length * std::sqrt(static_cast<double>(particles)));
   const auto objective = [&](const Rollout& flight, double weight) {
     return flight.control_effort * flight.control_effort +
-           std::pow(weight * unit, 2) * miss_of(flight).squaredNorm();
+           std::pow(weight * unit, 2) * residual_of(flight).squaredNorm();
   };
   // An answer of before is corrected where it stands; a new one starts where effort counts.
   double weight = summary.flight.control_effort * length / summary.flight.error.mean;
-  if (problem.aim_offset.empty()) {
+  if (problem.reference_correction.empty()) {
     weight = std::min(weight, std::isfinite(options.effort_limit) ? 1.0 : 30.0);
   }
   // A cloth that is too long or too short for a segment of the target can be squeezed towards it
   // without end; there, an error of 1e-4·L is worth a particle's weight and no more.
   constexpr double reachable_mismatch = 1e-6;
-  const bool within_reach = assess(*make(aimed)).length_mismatch <= reachable_mismatch;
+  const bool within_reach = assess(*make(corrected)).length_mismatch <= reachable_mismatch;
   const double largest_weight = within_reach || std::isfinite(options.effort_limit)
                                     ? std::numeric_limits<double>::infinity()
                                     : 1e4;
   double growth = 4;
   constexpr double least_damping = 1e-3, landing_damping = 1, most_damping = 1e3;
   double damping = least_damping;
-  // Where the tangent no longer foretells what effort can be spared, little of it is left to spare;
-  // from near enough, the cloth lands.
+  // Where the jacobian no longer foretells what effort can be spared, little of it is left to
+  // spare; from near enough, the cloth lands.
   bool landing = false;
   constexpr double least_stride = 1e-2;
   double stride = 1;  // of the way to land
   double landing_error = within_reach && !std::isfinite(options.effort_limit) ? 1e-3 * length : 0;
-  std::optional<Neighbourhood> near;
+  std::optional<LocalModel> near;
   for (Index round = 0; round < options.rounds; ++round) {
     if (summary.flight.error.mean <= options.tolerance * length) break;
     if (summary.flight.status == RolloutStatus::diverged) {
@@ -194,25 +195,25 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
       break;
     }
     if (!near) {
-      aimed.aim_offset = summary.aim_offset;
-      near.emplace(model(aimed)->flight_tangent(gain, directions));
-      ++summary.tangents;
+      corrected.reference_correction = summary.reference_correction;
+      near.emplace(model(corrected)->jacobian(gain, directions));
+      ++summary.jacobians;
       if (!near->is_finite()) {
-        summary.reason = "the tangent is not finite";
+        summary.reason = "the jacobian is not finite";
         break;
       }
       near->set_damping(damping);
     }
-    const Vector miss = miss_of(summary.flight);
+    const Vector residual = residual_of(summary.flight);
     const Vector step =
-        landing ? Vector(stride * near->landing(miss)) : near->step(miss, weight * unit);
-    aimed.aim_offset = moved(summary.aim_offset, directions, step);
-    Rollout flight = rollout(*make(aimed), gain);
+        landing ? Vector(stride * near->landing(residual)) : near->step(residual, weight * unit);
+    corrected.reference_correction = moved(summary.reference_correction, directions, step);
+    Rollout flight = rollout(*make(corrected), gain);
     ++summary.rollouts;
     const auto accept = [&] {
       near->go(step);
       summary.flight = std::move(flight);
-      summary.aim_offset = aimed.aim_offset;
+      summary.reference_correction = corrected.reference_correction;
     };
     if (landing) {
       const double left = flight.error.mean / summary.flight.error.mean;
@@ -232,7 +233,7 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
       continue;
     }
     const double kept = (objective(summary.flight, weight) - objective(flight, weight)) /
-                        near->promise(miss, weight * unit, step);
+                        near->predicted_reduction(residual, weight * unit, step);
     if (kept > 0.1) {
       const bool within = summary.flight.control_effort <= options.effort_limit;
       if (within && flight.control_effort > options.effort_limit) {
@@ -279,45 +280,44 @@ RefineSummary refine(const Problem& problem, double gain, const MakeBackend& mak
   return summary;
 }
 
-RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
-                         const MakeBackend& make, const MakeBackend& model,
-                         const RefineOptions& options) {
+RefineSummary transfer(const Problem& problem, const RefineSummary& answer, const MakeBackend& make,
+                       const MakeBackend& model, const RefineOptions& options) {
   constexpr double single_precision = 1e-5;
   constexpr Index rounds = 4;
   const auto start = std::chrono::steady_clock::now();
   const double tolerance = std::max(options.tolerance, single_precision);
   const double gain = answer.flight.gains.rest;
-  Problem aimed = problem;
-  aimed.aim_offset = answer.aim_offset;
-  RefineSummary carried = answer;
-  carried.flight = rollout(*make(aimed), gain);
-  carried.error_before = rollout(*make(problem), gain).error.mean;
-  carried.rollouts += 2;
-  carried.converged = carried.flight.error.mean <= tolerance * problem.cloth().size;
-  if (carried.converged) {
-    carried.reason = arrived;
+  Problem corrected = problem;
+  corrected.reference_correction = answer.reference_correction;
+  RefineSummary transferred = answer;
+  transferred.flight = rollout(*make(corrected), gain);
+  transferred.error_before = rollout(*make(problem), gain).error.mean;
+  transferred.rollouts += 2;
+  transferred.converged = transferred.flight.error.mean <= tolerance * problem.cloth().size;
+  if (transferred.converged) {
+    transferred.reason = arrived;
   } else if (std::isfinite(options.effort_limit)) {
-    // Steps towards the target would leave the trade that the limit asked for.
-    carried.reason = "the limit's trade of error for effort, as it was found";
+    // Steps towards the target would leave the Pareto front that the limit asked for.
+    transferred.reason = "the limit's point of the Pareto front, as it was found";
   } else {
-    const RefineSummary corrected =
-        refine(aimed, gain, make, model, {.tolerance = tolerance, .rounds = rounds});
-    carried.rollouts += corrected.rollouts;
-    carried.tangents += corrected.tangents;
-    if (corrected.flight.error.mean < carried.flight.error.mean) {
-      carried.flight = corrected.flight;
-      carried.aim_offset = corrected.aim_offset;
-      carried.converged = corrected.converged;
+    const RefineSummary nearer =
+        refine(corrected, gain, make, model, {.tolerance = tolerance, .rounds = rounds});
+    transferred.rollouts += nearer.rollouts;
+    transferred.jacobians += nearer.jacobians;
+    if (nearer.flight.error.mean < transferred.flight.error.mean) {
+      transferred.flight = nearer.flight;
+      transferred.reference_correction = nearer.reference_correction;
+      transferred.converged = nearer.converged;
     }
-    carried.reason = corrected.reason;
+    transferred.reason = nearer.reason;
   }
-  if (carried.flight.control_effort > options.effort_limit) {
-    carried.converged = false;
-    carried.reason = too_much_effort;
+  if (transferred.flight.control_effort > options.effort_limit) {
+    transferred.converged = false;
+    transferred.reason = too_much_effort;
   }
-  carried.seconds +=
+  transferred.seconds +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return carried;
+  return transferred;
 }
 
 }  // namespace nuno

@@ -7,11 +7,11 @@
 namespace nuno {
 
 Objective robust_objective(const Backend& backend, const RobustOptions& options) {
-  assert(options.size > 0 && options.disturbances >= 1);
+  assert(options.size > 0 && options.perturbations >= 1);
   const Problem& problem = backend.problem();
   std::vector<Points> starts = {problem.cloth().initial};
-  for (unsigned seed = 1; seed <= options.disturbances; ++seed) {
-    starts.push_back(disturbed(problem, options.size, seed));
+  for (unsigned seed = 1; seed <= options.perturbations; ++seed) {
+    starts.push_back(perturbed(problem, options.size, seed));
   }
   Objective result = objective(backend);
   result.samples = nullptr;

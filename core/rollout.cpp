@@ -186,7 +186,7 @@ Points bulged(const Sheet& sheet, double amplitude, unsigned seed) {
 
 }  // namespace
 
-Points disturbed(const Problem& problem, double size, unsigned seed) {
+Points perturbed(const Problem& problem, double size, unsigned seed) {
   const auto moved = [&](double amplitude) {
     return problem.is_sheet() ? bulged(problem.sheet(), amplitude, seed)
                               : turned(problem.chain(), amplitude, seed);
@@ -197,7 +197,7 @@ Points disturbed(const Problem& problem, double size, unsigned seed) {
 }
 
 double sensitivity(const Backend& backend, const Rollout& flight) {
-  const Points initial = disturbed(backend.problem(), backend.smallest_disturbance());
+  const Points initial = perturbed(backend.problem(), backend.smallest_perturbation());
   const Rollout twin = rollout(backend, flight.gains, {}, initial);
   if (flight.status == RolloutStatus::diverged || twin.status == RolloutStatus::diverged) {
     return std::numeric_limits<double>::infinity();

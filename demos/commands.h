@@ -37,8 +37,8 @@ struct OptimizeOptions {
   /// Least error within this control effort; takes the optimiser's place.
   std::optional<double> effort_limit;
   Index coefficients = 1;           ///< gains by group of modes, 1 … most_groups
-  bool refine = false;              ///< aims off until the cloth is on the target
-  bool robust = false;              ///< the error averaged over small disturbances of the start
+  bool refine = false;              ///< corrects the reference until the cloth is on the target
+  bool robust = false;              ///< the error averaged over small perturbations of the start
   std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
   std::string out;                  ///< result file, "-" for standard output, empty for none
 };

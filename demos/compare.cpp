@@ -108,7 +108,7 @@ void write_report(const std::string& folder, const std::vector<ReportScene>& sce
     const std::string name =
         fmt::format("figures/{:02}-{}", i + 1, file_name(scenes[i].comparison.scene));
     write(name + "-gain.svg", gain_figure(scenes[i], 800, false));
-    write(name + "-trade-off.svg", trade_off_figure(scenes[i], 800, false));
+    write(name + "-pareto-front.svg", pareto_figure(scenes[i], 800, false));
     if (scenes[i].choices.empty()) continue;
     const figures::FlightFigure figure{
         .title = scenes[i].comparison.scene,

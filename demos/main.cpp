@@ -263,7 +263,7 @@ ExitStatus run(int argc, char** argv) {
                             "with a damped \"morph\", see below");
   optimize_command.add_flag("--robust", optimization.robust,
                             "Prefer a gain whose answer is not fragile: the error is the mean\n"
-                            "over five starts, four of them disturbed by 0.1 % of the length");
+                            "over five starts, four of them perturbed by 0.1 % of the length");
   add_time_step(optimize_command, optimization.time_step);
   add_out(optimize_command, optimization.out, "FILE", out_file);
   optimize_command.footer(which_reference);

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <nuno/feasibility.h>
+#include <nuno/pareto_front.h>
 #include <nuno/robust.h>
-#include <nuno/trade_off.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,7 +14,7 @@
 #include <nuno/progress.h>
 #include "commands.h"
 #include "pictures/summary.h"
-#include "single_flight.h"
+#include "single_rollout.h"
 
 namespace nuno {
 namespace {
@@ -28,37 +28,38 @@ Optimization search(const OptimizeOptions& options, const SceneFile& file, const
                      run_optimizer(options.optimizer, with_progress(errors, file.scene.name))};
   if (options.robust) {
     found.robust_error = found.summary.error;
-    found.summary.evaluations *= 1 + static_cast<Index>(robustness.disturbances);
+    found.summary.evaluations *= 1 + static_cast<Index>(robustness.perturbations);
   }
   return found;
 }
 
 /// The gain that keeps a limit at the least cost; if none does, the nearest to it.
-Optimization trade(const OptimizeOptions& options, const SceneFile& file, const Backend& backend) {
+Optimization search_front(const OptimizeOptions& options, const SceneFile& file,
+                          const Backend& backend) {
   const auto start = std::chrono::steady_clock::now();
-  Optimization found{"trade-off", {}};
+  Optimization found{"pareto-front", {}};
   OptimizeSummary& summary = found.summary;
   std::atomic<Index> rollouts = 0;
   const auto count = [&] { ++rollouts; };
-  found.trade_off = trade_off(backend, 64, count);
+  found.pareto_front = pareto_front(backend, 64, count);
   summary.evaluations = rollouts;
-  if (found.trade_off.empty()) return found;  // every rollout diverged
-  TradeOffPoint point;
+  if (found.pareto_front.empty()) return found;  // every rollout diverged
+  ParetoPoint point;
   if (options.error_limit) {
     const double limit = *options.error_limit * file.problem.cloth().size;
-    const auto kept = least_effort(backend, found.trade_off, limit, count);
-    point = kept.value_or(found.trade_off.back());
+    const auto kept = least_effort(backend, found.pareto_front, limit, count);
+    point = kept.value_or(found.pareto_front.back());
     summary.status = kept ? OptimizeStatus::converged : OptimizeStatus::budget;
     summary.reason = kept ? "the least effort within the error limit"
                           : "no gain keeps the error limit; this is the nearest";
   } else {
-    point = least_error(backend, found.trade_off, *options.effort_limit, count);
+    point = least_error(backend, found.pareto_front, *options.effort_limit, count);
     summary.reason = "the least error within the effort limit";
   }
   summary.evaluations = rollouts;
   summary.gain = point.gain;
   summary.error = point.error;
-  for (const TradeOffPoint& at : found.trade_off) summary.history.push_back({at.gain, at.error});
+  for (const ParetoPoint& at : found.pareto_front) summary.history.push_back({at.gain, at.error});
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return found;
 }
@@ -80,7 +81,7 @@ bool is_better(const Rollout& a, const Rollout& b, const OptimizeOptions& option
 ExitStatus optimize(const OptimizeOptions& options) {
   SceneFile file = read_scene_for(options.out, options.scene, options.time_step);
   require_groups(file, options.coefficients);
-  if (options.refine) require_few_particles_to_aim(file);
+  if (options.refine) require_few_particles_to_refine(file);
   auto backend = make_backend(options.backend, file);
   std::FILE* const summary = people(options.out);
   if (const std::string words = verdict(assess(*backend)); !words.empty()) {
@@ -88,7 +89,7 @@ ExitStatus optimize(const OptimizeOptions& options) {
   }
 
   Optimization found = options.error_limit || options.effort_limit
-                           ? trade(options, file, *backend)
+                           ? search_front(options, file, *backend)
                            : search(options, file, *backend);
   Gains gains = found.summary.gain;
   double error = found.summary.error;
@@ -104,14 +105,14 @@ ExitStatus optimize(const OptimizeOptions& options) {
     RefineOptions limits;
     if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
     if (options.effort_limit) limits.effort_limit = *options.effort_limit;
-    RefineSummary refined = aim_off(options.backend, file, limits);
+    RefineSummary refined = refine_on(options.backend, file, limits);
     if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.cloth().size)) {
       found.refinement = std::move(refined);
       gains = found.refinement->flight.gains;
-      file.problem.aim_offset = found.refinement->aim_offset;
+      file.problem.reference_correction = found.refinement->reference_correction;
       backend = make_backend(options.backend, file);
     } else {
-      fmt::print(summary, "aiming off would be no better than the gain alone: left out\n");
+      fmt::print(summary, "refinement would be no better than the gain alone: left out\n");
     }
   }
   // If every rollout diverged, the one at the gain it ended on says why.
@@ -119,8 +120,8 @@ ExitStatus optimize(const OptimizeOptions& options) {
   if (status != ExitStatus::done) return status;
   const double percent = 100 / file.problem.cloth().size;
   if (found.robust_error) {
-    fmt::print(summary, "  {:<17} {:.4g} % of the cloth's length, mean of {} disturbed starts\n",
-               "robust error", percent * *found.robust_error, 1 + RobustOptions().disturbances);
+    fmt::print(summary, "  {:<17} {:.4g} % of the cloth's length, mean of {} perturbed starts\n",
+               "robust error", percent * *found.robust_error, 1 + RobustOptions().perturbations);
   }
   const OptimizeSummary& search = found.summary;
   fmt::print(summary, "  {:<17} {} rollouts in {}{}: {}\n", found.optimizer, search.evaluations,
@@ -137,11 +138,11 @@ ExitStatus optimize(const OptimizeOptions& options) {
   }
   if (found.refinement) {
     const RefineSummary& refined = *found.refinement;
-    fmt::print(summary, "  {:<17} {}{} rollouts and {} tangents, {}: {}\n", "aiming off",
+    fmt::print(summary, "  {:<17} {}{} rollouts and {} Jacobians, {}: {}\n", "refinement",
                std::isfinite(refined.error_before)
                    ? fmt::format("from {:.4g} % in ", percent * refined.error_before)
                    : "",
-               refined.rollouts, refined.tangents, duration(refined.seconds), refined.reason);
+               refined.rollouts, refined.jacobians, duration(refined.seconds), refined.reason);
   }
   return ExitStatus::done;
 }

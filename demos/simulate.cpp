@@ -1,5 +1,5 @@
 #include "commands.h"
-#include "single_flight.h"
+#include "single_rollout.h"
 
 namespace nuno {
 

@@ -88,11 +88,11 @@ void require_few_frames(const SceneFile& file) {
   }
 }
 
-void require_few_particles_to_aim(const SceneFile& file) {
-  constexpr Index most = 128;  // a tangent takes N times as long as a flight, and N² numbers
+void require_few_particles_to_refine(const SceneFile& file) {
+  constexpr Index most = 128;  // a jacobian takes N times as long as a flight, and N² numbers
   if (file.scene.particles <= most) return;
-  throw InputError(fmt::format("{}: /particles: {} is not <= {}, the most to aim off with",
-                               file.path, file.scene.particles, most));
+  throw InputError(fmt::format("{}: /particles: {} is not <= {}, the most to refine", file.path,
+                               file.scene.particles, most));
 }
 
 void require_groups(const SceneFile& file, Index groups) {
@@ -131,8 +131,8 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
   return backend;
 }
 
-RefineSummary aim_off(std::string_view name, const SceneFile& file, const RefineOptions& options,
-                      const std::function<void()>& before_rollout) {
+RefineSummary refine_on(std::string_view name, const SceneFile& file, const RefineOptions& options,
+                        const std::function<void()>& before_rollout) {
   const auto maker = [&](std::string_view engine) -> MakeBackend {
     return [&, make = backend_maker(engine, file)](const Problem& problem) {
       if (before_rollout) before_rollout();
@@ -140,10 +140,9 @@ RefineSummary aim_off(std::string_view name, const SceneFile& file, const Refine
     };
   };
   const MakeBackend model = maker("native");
-  const double gain = following_gain(*model(file.problem));
+  const double gain = tracking_gain(*model(file.problem));
   const RefineSummary refined = refine(file.problem, gain, model, model, options);
-  return name == "native" ? refined
-                          : carry_over(file.problem, refined, maker(name), model, options);
+  return name == "native" ? refined : transfer(file.problem, refined, maker(name), model, options);
 }
 
 OptimizeSummary run_optimizer(std::string_view name, const Objective& objective) {

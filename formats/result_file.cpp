@@ -67,13 +67,13 @@ Json to_json(const Optimization& optimization) {
                  {"seconds", summary.seconds}};
   if (optimization.robust_error) result["robust_error"] = *optimization.robust_error;
   result["history"] = history;
-  if (!optimization.trade_off.empty()) {
+  if (!optimization.pareto_front.empty()) {
     Json curve = Json::array();
-    for (const TradeOffPoint& point : optimization.trade_off) {
+    for (const ParetoPoint& point : optimization.pareto_front) {
       curve.push_back(
           {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
     }
-    result["trade_off"] = curve;
+    result["pareto_front"] = curve;
   }
   if (optimization.joint) {
     const JointSearchSummary& joint = *optimization.joint;
@@ -89,15 +89,16 @@ Json to_json(const Optimization& optimization) {
   }
   if (optimization.refinement) {
     const RefineSummary& refinement = *optimization.refinement;
-    Json aim_offset = Json::array();
-    for (const Points& offset : refinement.aim_offset) aim_offset.push_back(to_json(offset));
+    Json reference_correction = Json::array();
+    for (const Points& offset : refinement.reference_correction)
+      reference_correction.push_back(to_json(offset));
     Json& told = result["refinement"];
     told = {{"status", refinement.converged ? "converged" : "nearest"},
             {"reason", refinement.reason},
             {"rollouts", refinement.rollouts},
-            {"tangents", refinement.tangents},
+            {"jacobians", refinement.jacobians},
             {"seconds", refinement.seconds},
-            {"aim_offset", aim_offset}};
+            {"reference_correction", reference_correction}};
     if (std::isfinite(refinement.error_before)) told["error_before"] = refinement.error_before;
   }
   return result;

@@ -44,7 +44,7 @@ void step(const ChainPlan& plan, bool first, const double* forces, double* posit
           double* velocities, ScalarScratch& scratch);
 
 /// The gains of several flights.
-struct FlightGains {
+struct RolloutGains {
   std::span<const double> values;  ///< of every group [groups × flights], a flight after another
   const LowModes* low_modes = nullptr;  ///< of all groups but the last; null: there is but one
   /// The group with respect to whose gain a flight's derivatives are taken; empty: the first for
@@ -59,17 +59,18 @@ struct FlightGains {
   Index seed(Index flight) const {
     return seeds.empty() ? 0 : seeds[static_cast<std::size_t>(flight)];
   }
-  FlightGains part(Index first, Index count) const;
+  RolloutGains part(Index first, Index count) const;
 };
 
 /// One whole flight under shape control towards `reference` for each of `gains`: final positions
-/// [2N] after another in `finals`, and their derivatives with respect to a gain in `tangents`
+/// [2N] after another in `finals`, and their derivatives with respect to a gain in `derivatives`
 /// unless that is null. Equal, bit for bit, to steps of `step` under ShapeControl.
 void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-         const double* launch_velocity, const FlightGains& gains, double* finals, double* tangents);
+         const double* launch_velocity, const RolloutGains& gains, double* finals,
+         double* derivatives);
 
 /// A flight on its way, before a step.
-struct FlightState {
+struct RolloutState {
   Index step = 0;
   ReferenceMotion reference;
   Points positions;
@@ -79,29 +80,29 @@ struct FlightState {
 /// Directions to change a flight in, one after another.
 struct Directions {
   Index count = 0;
-  const double* shapes = nullptr;    ///< of the aim offset [2N] each
-  const Index* powers = nullptr;     ///< which of aim_powers they are for
+  const double* shapes = nullptr;    ///< of the reference correction [2N] each
+  const Index* powers = nullptr;     ///< which of correction_powers they are for
   const double* launches = nullptr;  ///< what they make of the velocity at the start [2N] each
 };
 
 /// Derivatives that fly_along writes, of each direction after another.
-struct Tangents {
+struct DirectionalDerivatives {
   double* arrival = nullptr;  ///< of the final positions [2N] each
   double* forces = nullptr;   ///< of the control forces at the samples [2N × samples] each
 };
 
-/// The derivatives, along at most slopes() directions, of the rest of a flight at one gain, which
-/// they do not touch before `start`. `samples` are the steps, ascending, whose control forces are
-/// asked for; of those before the start nothing is written.
-void fly_along(const ChainPlan& plan, const FlightState& start, double gain,
+/// The derivatives, along at most derivative_lanes() directions, of the rest of a flight at one
+/// gain, which they do not touch before `start`. `samples` are the steps, ascending, whose control
+/// forces are asked for; of those before the start nothing is written.
+void fly_along(const ChainPlan& plan, const RolloutState& start, double gain,
                const Directions& directions, std::span<const Index> samples,
-               const Tangents& tangents);
+               const DirectionalDerivatives& derivatives);
 
 /// Gains that `fly` takes side by side, one a SIMD lane.
 Index lanes();
 
 /// Directions that `fly_along` takes side by side.
-Index slopes();
+Index derivative_lanes();
 
 /// The instruction set in use, for people.
 std::string instruction_set();

@@ -104,7 +104,7 @@ class NativeBackend final : public Backend {
 
   std::vector<double> do_errors(std::span<const Gains> gains,
                                 const Points& initial) const override {
-    const GroupedFlights flights(problem(), gains, 1);
+    const GroupedRollouts flights(problem(), gains, 1);
     std::vector<double> result;
     for (const Arrival& arrival : fly_over(flights.gains(), initial, false)) {
       result.push_back(arrival.error);
@@ -112,24 +112,24 @@ class NativeBackend final : public Backend {
     return result;
   }
 
-  bool do_has_slopes() const override { return true; }
+  bool do_has_derivatives() const override { return true; }
 
   std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const override {
     if (gains.empty()) return {};
     const auto groups = static_cast<std::size_t>(gains.front().count());
-    const GroupedFlights flights(problem(), gains, gains.front().count());
+    const GroupedRollouts flights(problem(), gains, gains.front().count());
     std::vector<Arrival> arrivals = fly_over(flights.gains(), cloth().initial, true);
     std::vector<ErrorSample> result(gains.size());
     for (std::size_t i = 0; i < arrivals.size(); ++i) {
       ErrorSample& sample = result[i / groups];
       sample.error = arrivals[i].error;
-      sample.miss = std::move(arrivals[i].miss);
-      sample.slopes.push_back(std::move(arrivals[i].slope));
+      sample.residual = std::move(arrivals[i].residual);
+      sample.derivatives.push_back(std::move(arrivals[i].derivative));
     }
     return result;
   }
 
-  FlightTangent do_flight_tangent(double gain, const AimDirections& directions) const override {
+  RolloutJacobian do_jacobian(double gain, const CorrectionDirections& directions) const override {
     const ReferenceMotion reference(problem(), time_step());
     const Points& initial = cloth().initial;
     const Index size = initial.size();
@@ -138,7 +138,7 @@ class NativeBackend final : public Backend {
     for (Index d = 0; d < count; ++d) {
       const auto power = static_cast<std::size_t>(directions.powers[static_cast<std::size_t>(d)]);
       const Points shape = shape_of(directions.shapes.col(d).reshaped(2, size / 2));
-      const Points turned = reference.aim_rates()[power] * shape;
+      const Points turned = reference.correction_rates()[power] * shape;
       shapes.col(d) = shape.reshaped();
       launches.col(d) =
           (problem().launch == Launch::inextensible ? without_stretching(initial, turned) : turned)
@@ -163,33 +163,33 @@ class NativeBackend final : public Backend {
       sampled = end;
     }
 
-    FlightTangent tangent;
+    RolloutJacobian jacobian;
     const Index forces = size * static_cast<Index>(samples.size());
-    tangent.arrival.resize(size, count);
-    tangent.forces.resize(forces);
-    tangent.forces_tangent.setZero(forces, count);
-    const std::vector<FlightState> starts = fly_once(gain, samples, tangent.forces);
-    const Index batch = slopes();
+    jacobian.arrival.resize(size, count);
+    jacobian.forces.resize(forces);
+    jacobian.forces_jacobian.setZero(forces, count);
+    const std::vector<RolloutState> starts = fly_once(gain, samples, jacobian.forces);
+    const Index batch = derivative_lanes();
     parallel_for((count + batch - 1) / batch, [&](Index b) {
       const Index first = b * batch;
       const Index here = std::min(batch, count - first);
       const Index* powers = directions.powers.data() + first;
       fly_along(plan_, starts[static_cast<std::size_t>(*std::min_element(powers, powers + here))],
                 gain, {here, shapes.col(first).data(), powers, launches.col(first).data()}, samples,
-                {tangent.arrival.col(first).data(), tangent.forces_tangent.col(first).data()});
+                {jacobian.arrival.col(first).data(), jacobian.forces_jacobian.col(first).data()});
     });
     const Eigen::Map<const Vector> weight(weights.data(), static_cast<Index>(weights.size()));
     const Vector each = weight.transpose().replicate(size, 1).reshaped();
-    tangent.forces.array() *= each.array();
-    tangent.forces_tangent.array().colwise() *= each.array();
-    return tangent;
+    jacobian.forces.array() *= each.array();
+    jacobian.forces_jacobian.array().colwise() *= each.array();
+    return jacobian;
   }
 
-  /// Gains by group in the kernel's layout: each of them `copies` times, with the slope by another
-  /// group each time.
-  class GroupedFlights {
+  /// Gains by group in the kernel's layout: each of them `copies` times, with the derivative by
+  /// another group each time.
+  class GroupedRollouts {
    public:
-    GroupedFlights(const Problem& problem, std::span<const Gains> gains, Index copies)
+    GroupedRollouts(const Problem& problem, std::span<const Gains> gains, Index copies)
         : modes_(problem.chain().particles(), gains.empty() ? 1 : gains.front().count()) {
       for (const Gains& each : gains) {
         assert(each.count() == gains.front().count());
@@ -200,7 +200,7 @@ class NativeBackend final : public Backend {
         }
       }
     }
-    FlightGains gains() const { return {values_, modes_.count() > 0 ? &modes_ : nullptr, seeds_}; }
+    RolloutGains gains() const { return {values_, modes_.count() > 0 ? &modes_ : nullptr, seeds_}; }
 
    private:
     LowModes modes_;
@@ -208,19 +208,21 @@ class NativeBackend final : public Backend {
     std::vector<Index> seeds_;
   };
 
-  /// The control forces at the samples, and the flight where each of aim_powers begins to be felt.
-  std::vector<FlightState> fly_once(double gain, std::span<const Index> samples,
-                                    Vector& forces) const {
+  /// The control forces at the samples, and the flight where each of correction_powers begins to be
+  /// felt.
+  std::vector<RolloutState> fly_once(double gain, std::span<const Index> samples,
+                                     Vector& forces) const {
     constexpr double felt = 1e-12;  // of the rate at which an offset comes in, times t₀
     const ShapeControl control(problem(), gain);
     ReferenceMotion reference(problem(), time_step());
     ChainSimulation cloth(plan_, problem().cloth().initial, launch(*this));
     Points force = Points::Zero(2, plan_.particles);
-    std::vector<FlightState> starts;
+    std::vector<RolloutState> starts;
     std::size_t sample = 0;
-    for (Index step = 0; starts.size() < aim_powers.size() || sample < samples.size(); ++step) {
-      while (starts.size() < aim_powers.size() &&
-             (reference.aim_rates()[starts.size()] * problem().arrival_time > felt ||
+    for (Index step = 0; starts.size() < correction_powers.size() || sample < samples.size();
+         ++step) {
+      while (starts.size() < correction_powers.size() &&
+             (reference.correction_rates()[starts.size()] * problem().arrival_time > felt ||
               step + 1 == steps())) {
         starts.push_back({step, reference, cloth.positions(), cloth.velocities()});
       }
@@ -238,34 +240,34 @@ class NativeBackend final : public Backend {
   /// How a flight of the kernel arrives, and the derivatives with respect to one of its gains.
   struct Arrival {
     double error = 0;
-    Points miss;
-    ErrorSample::Slope slope;
+    Points residual;
+    ErrorSample::Derivative derivative;
   };
 
-  std::vector<Arrival> fly_over(const FlightGains& gains, const Points& initial,
-                                bool with_slopes) const {
+  std::vector<Arrival> fly_over(const RolloutGains& gains, const Points& initial,
+                                bool with_derivatives) const {
     const Points velocities = launch(*this);
     const Index count = gains.flights();
     std::vector<Arrival> arrivals(static_cast<std::size_t>(count));
     const Index batch = lanes();
     parallel_for((count + batch - 1) / batch, [&](Index b) {
       const Index first = b * batch;
-      const FlightGains here = gains.part(first, std::min(batch, count - first));
-      fly_batch(here, initial, velocities, with_slopes,
+      const RolloutGains here = gains.part(first, std::min(batch, count - first));
+      fly_batch(here, initial, velocities, with_derivatives,
                 std::span(arrivals).subspan(static_cast<std::size_t>(first)));
     });
     return arrivals;
   }
 
-  void fly_batch(const FlightGains& gains, const Points& initial, const Points& velocities,
-                 bool with_slopes, std::span<Arrival> arrivals) const {
+  void fly_batch(const RolloutGains& gains, const Points& initial, const Points& velocities,
+                 bool with_derivatives, std::span<Arrival> arrivals) const {
     const Points& target = problem().target;
     const Index size = target.size();
     const Index count = gains.flights();
     std::vector<double> finals(static_cast<std::size_t>(size * count));
-    std::vector<double> tangents(with_slopes ? finals.size() : 0);
+    std::vector<double> derivatives(with_derivatives ? finals.size() : 0);
     fly(plan_, ReferenceMotion(problem(), time_step()), initial.data(), velocities.data(), gains,
-        finals.data(), with_slopes ? tangents.data() : nullptr);
+        finals.data(), with_derivatives ? derivatives.data() : nullptr);
     for (Index lane = 0; lane < count; ++lane) {
       const Eigen::Map<const Points> final(finals.data() + lane * size, 2, target.cols());
       Arrival& arrival = arrivals[static_cast<std::size_t>(lane)];
@@ -274,16 +276,17 @@ class NativeBackend final : public Backend {
         continue;
       }
       arrival.error = arrival_error(final, target).mean;
-      if (!with_slopes) continue;
-      arrival.miss = final - target;
-      arrival.slope.miss =
-          Eigen::Map<const Points>(tangents.data() + lane * size, 2, target.cols());
-      double slope = 0;
+      if (!with_derivatives) continue;
+      arrival.residual = final - target;
+      arrival.derivative.residual =
+          Eigen::Map<const Points>(derivatives.data() + lane * size, 2, target.cols());
+      double derivative = 0;
       for (Index i = 0; i < target.cols(); ++i) {
-        const double distance = arrival.miss.col(i).norm();
-        if (distance > 0) slope += arrival.miss.col(i).dot(arrival.slope.miss.col(i)) / distance;
+        const double distance = arrival.residual.col(i).norm();
+        if (distance > 0)
+          derivative += arrival.residual.col(i).dot(arrival.derivative.residual.col(i)) / distance;
       }
-      arrival.slope.error = slope / static_cast<double>(target.cols());
+      arrival.derivative.error = derivative / static_cast<double>(target.cols());
     }
   }
 

@@ -153,7 +153,7 @@ HWY_INLINE T angle(T sine, T cosine) {
 
 // ---- two numbers side by side ---------------------------------------------------------------
 
-/// Slopes along two directions, which share the value's own arithmetic.
+/// Derivatives along two directions, which share the value's own arithmetic.
 template <typename T>
 struct Pair {
   T first;
@@ -207,33 +207,33 @@ HWY_INLINE Pair<T> neg_mul_add(Pair<T> a, T b, Pair<T> c) {
 template <typename T, typename S = T>
 struct Dual {
   T value;
-  S slope;
+  S derivative;
 
   HWY_INLINE Dual() = default;
-  HWY_INLINE Dual(T v, S s) : value(v), slope(s) {}
+  HWY_INLINE Dual(T v, S s) : value(v), derivative(s) {}
 };
 
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> operator+(Dual<T, S> a, Dual<T, S> b) {
-  return {a.value + b.value, a.slope + b.slope};
+  return {a.value + b.value, a.derivative + b.derivative};
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> operator-(Dual<T, S> a, Dual<T, S> b) {
-  return {a.value - b.value, a.slope - b.slope};
+  return {a.value - b.value, a.derivative - b.derivative};
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> operator*(Dual<T, S> a, Dual<T, S> b) {
-  return {a.value * b.value, mul_add(a.slope, b.value, a.value * b.slope)};
+  return {a.value * b.value, mul_add(a.derivative, b.value, a.value * b.derivative)};
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> mul_add(Dual<T, S> a, Dual<T, S> b, Dual<T, S> c) {
   return {mul_add(a.value, b.value, c.value),
-          mul_add(a.slope, b.value, mul_add(a.value, b.slope, c.slope))};
+          mul_add(a.derivative, b.value, mul_add(a.value, b.derivative, c.derivative))};
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> neg_mul_add(Dual<T, S> a, Dual<T, S> b, Dual<T, S> c) {
   return {neg_mul_add(a.value, b.value, c.value),
-          neg_mul_add(a.slope, b.value, neg_mul_add(a.value, b.slope, c.slope))};
+          neg_mul_add(a.derivative, b.value, neg_mul_add(a.value, b.derivative, c.derivative))};
 }
 
 /// 1/(c − a·b) with a constant c.
@@ -244,18 +244,18 @@ HWY_INLINE T reciprocal_of_difference(T c, T a, T b) {
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> reciprocal_of_difference(T c, Dual<T, S> a, Dual<T, S> b) {
   const T value = reciprocal_of_difference(c, a.value, b.value);
-  return {value, value * value * mul_add(a.slope, b.value, a.value * b.slope)};
+  return {value, value * value * mul_add(a.derivative, b.value, a.value * b.derivative)};
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> rsqrt(Dual<T, S> a) {
   const T value = rsqrt(a.value);
-  return {value, T(-0.5) * value * (value * value) * a.slope};
+  return {value, T(-0.5) * value * (value * value) * a.derivative};
 }
 /// Of a unit vector: dθ = cosine·d(sine) − sine·d(cosine).
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> angle(Dual<T, S> sine, Dual<T, S> cosine) {
   return {angle(sine.value, cosine.value),
-          neg_mul_add(sine.value, cosine.slope, cosine.value * sine.slope)};
+          neg_mul_add(sine.value, cosine.derivative, cosine.value * sine.derivative)};
 }
 
 template <typename T>
@@ -264,7 +264,7 @@ HWY_INLINE T divide(T a, T b) {
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> divide(Dual<T, S> a, Dual<T, S> b) {
-  return {a.value / b.value, a.slope / b.value};
+  return {a.value / b.value, a.derivative / b.value};
 }
 
 // ---- lanes --------------------------------------------------------------------------------------
@@ -292,7 +292,7 @@ HWY_INLINE void store_lanes(Pair<Pack> number, double* values) {
 
 // ---- constants times numbers ----------------------------------------------------------------
 
-/// The number of type T with this value and no slope.
+/// The number of type T with this value and no derivative.
 template <typename T>
 struct Constant {
   using Value = T;
@@ -304,14 +304,14 @@ struct Constant<Dual<T, S>> {
   static HWY_INLINE Dual<T, S> of(double value) { return {T(value), S(0.0)}; }
 };
 
-/// a·b + c with a constant a: no slope to carry.
+/// a·b + c with a constant a: no derivative to carry.
 template <typename T>
 HWY_INLINE T scale_add(double a, T b, T c) {
   return mul_add(T(a), b, c);
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> scale_add(double a, Dual<T, S> b, Dual<T, S> c) {
-  return {mul_add(T(a), b.value, c.value), mul_add(T(a), b.slope, c.slope)};
+  return {mul_add(T(a), b.value, c.value), mul_add(T(a), b.derivative, c.derivative)};
 }
 template <typename T>
 HWY_INLINE T scale(double a, T b) {
@@ -319,7 +319,7 @@ HWY_INLINE T scale(double a, T b) {
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> scale(double a, Dual<T, S> b) {
-  return {T(a) * b.value, T(a) * b.slope};
+  return {T(a) * b.value, T(a) * b.derivative};
 }
 /// a + b with a constant a.
 template <typename T>
@@ -328,7 +328,7 @@ HWY_INLINE T shift(double a, T b) {
 }
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> shift(double a, Dual<T, S> b) {
-  return {T(a) + b.value, b.slope};
+  return {T(a) + b.value, b.derivative};
 }
 
 }  // namespace HWY_NAMESPACE

@@ -58,7 +58,7 @@ std::vector<Vec> centroid_path(const Plot& plot, const Flight& flight) {
   return path;
 }
 
-/// Whether two flights aim at one target: it is then drawn and named once.
+/// Whether two flights have one target: it is then drawn and named once.
 bool same_target(const Flight& a, const Flight& b) {
   return a.target.cols() == b.target.cols() && a.target.isApprox(b.target, 1e-9);
 }

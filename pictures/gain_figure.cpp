@@ -21,9 +21,10 @@ std::vector<Evaluation> local_minima(const std::vector<Evaluation>& curve) {
     const double a = std::log(x1 / x0), b = std::log(x2 / x1);
     const double left = (y0 - y1) / a, right = (y2 - y1) / b;
     const double curvature = (left + right) / (a + b);
-    const double slope = (right * a - left * b) / (a + b);
-    const double move = curvature > 0 ? std::clamp(-slope / (2 * curvature), -a, b) : 0;
-    result.push_back({x1 * std::exp(move), std::max(0.0, y1 + move * (slope + curvature * move))});
+    const double derivative = (right * a - left * b) / (a + b);
+    const double move = curvature > 0 ? std::clamp(-derivative / (2 * curvature), -a, b) : 0;
+    result.push_back(
+        {x1 * std::exp(move), std::max(0.0, y1 + move * (derivative + curvature * move))});
   }
   return result;
 }

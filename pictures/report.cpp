@@ -18,8 +18,8 @@
 #include "embedded/report_html.h"
 #include "embedded/report_js.h"
 #include "pictures/gain_figure.h"
+#include "pictures/pareto_figure.h"
 #include "pictures/summary.h"
-#include "pictures/trade_off_figure.h"
 
 namespace nuno {
 namespace {
@@ -32,7 +32,7 @@ constexpr double most_frames = 60;
 constexpr Index most_particles = 64;
 constexpr double most_positions = 1e7;  // in memory, per flight
 constexpr double position_unit = 1e-4;  // of L
-constexpr std::size_t trades_to_pick = 8;
+constexpr std::size_t pareto_to_pick = 8;
 
 double frames_per_second(const Problem& problem) {
   const double affordable =
@@ -161,8 +161,8 @@ std::string section(const ReportScene& scene, std::size_t number) {
     const ReportChoice& choice = scene.choices[i];
     gains +=
         fmt::format("<label{}><input type=\"radio\" name=\"gain-{}\" value=\"{}\"{}>{}</label>\n",
-                    choice.is_trade ? " class=\"trade\"" : "", number, i, i == 0 ? " checked" : "",
-                    xml_text(choice.label));
+                    choice.is_pareto ? " class=\"pareto\"" : "", number, i,
+                    i == 0 ? " checked" : "", xml_text(choice.label));
   }
   std::string readings;
   for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
@@ -205,11 +205,11 @@ value="0.25">× 0.25</option><option value="0.5">× 0.5</option><option value="1
 <h3>Error at arrival, by gain</h3>
 {figure}
 <h3 class="below">Error at arrival, by control effort</h3>
-<div data-part="trade-off">
-{trade_off}</div>
+<div data-part="pareto-front">
+{pareto_front}</div>
 <p class="note">Lines: the gains that no other beats in both. <span class="screen">Click a point to fly
 it.</span></p>
-<table class="trade" aria-live="polite">
+<table class="pareto" aria-live="polite">
 <thead><tr><th class="engine">flight shown</th><th>α<small>N/m</small></th><th>error<small>% of
 L</small></th><th>effort<small>{unit}</small></th></tr></thead>
 <tbody>
@@ -224,20 +224,20 @@ L</small></th><th>effort<small>{unit}</small></th></tr></thead>
       fmt::arg("key_b", key(1)), fmt::arg("engine_a", engine_name(comparison.rows[0].backend)),
       fmt::arg("engine_b", engine_name(comparison.rows[1].backend)),
       fmt::arg("figure", gain_figure(scene, 440, true)), fmt::arg("gains", gains),
-      fmt::arg("trade_off", trade_off_figure(scene, 440, true)),
+      fmt::arg("pareto_front", pareto_figure(scene, 440, true)),
       fmt::arg("unit", xml_text(scene.effort_unit)), fmt::arg("readings", readings));
 }
 
 /// What an engine's flights of a comparison paid for their errors.
-TradeOffCurve trade_off_curve(const Comparison& comparison, std::size_t engine) {
+ParetoCurve pareto_front_curve(const Comparison& comparison, std::size_t engine) {
   const ComparisonRow& row = comparison.rows[engine];
-  const TradeOffPoint best = {row.gain, row.error.mean, row.control_effort};
-  TradeOffCurve curve{.backend = row.backend, .flights = {best}, .best = best};
+  const ParetoPoint best = {row.gain, row.error.mean, row.control_effort};
+  ParetoCurve curve{.backend = row.backend, .flights = {best}, .best = best};
   for (std::size_t k = 0; k < comparison.curve_gains.size(); ++k) {
     curve.flights.push_back({comparison.curve_gains[k], comparison.curve_errors[engine][k],
                              comparison.curve_efforts[engine][k]});
   }
-  std::ranges::sort(curve.flights, {}, &TradeOffPoint::gain);
+  std::ranges::sort(curve.flights, {}, &ParetoPoint::gain);
   return curve;
 }
 
@@ -266,7 +266,7 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
   struct Wish {
     std::string label;
     double first_gain = 0, second_gain = 0;
-    bool is_trade = false;
+    bool is_pareto = false;
   };
   const double best = comparison.rows[0].gain, other_best = comparison.rows[1].gain;
   const auto differs = [&](double gain) { return std::abs(gain - best) > 0.01 * best; };
@@ -283,7 +283,7 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
         {fmt::format("where descent ends, {}", shown(descent.gain)), descent.gain, descent.gain});
   }
   wishes.push_back({"launch only, 0", 0, 0});
-  for (const TradeOffPoint& point : spread_along(trade_off_curve(comparison, 0), trades_to_pick)) {
+  for (const ParetoPoint& point : spread_along(pareto_front_curve(comparison, 0), pareto_to_pick)) {
     if (!differs(point.gain)) continue;
     wishes.push_back(
         {fmt::format("α = {} N/m: error {} %, effort {}", shown(point.gain),
@@ -301,7 +301,7 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
                                                      : rollout(second, wish.second_gain, frames);
     });
     if (std::ranges::any_of(rollouts, diverged)) continue;
-    ReportChoice choice{wish.label, wish.is_trade, {}, {}};
+    ReportChoice choice{wish.label, wish.is_pareto, {}, {}};
     for (std::size_t i = 0; i < 2; ++i) {
       Flight flight = make_flight(comparison.scene, i == 0 ? first : second, rollouts[i]);
       flight.target = thinned(flight.target);
@@ -346,15 +346,15 @@ std::string gain_figure(const ReportScene& scene, double width, bool for_page) {
   return draw_gain_curves(curves, comparison.cloth_length, options).svg(!for_page);
 }
 
-std::string trade_off_figure(const ReportScene& scene, double width, bool for_page) {
+std::string pareto_figure(const ReportScene& scene, double width, bool for_page) {
   const Comparison& comparison = scene.comparison;
-  TradeOffFigure options;
+  ParetoFigure options;
   options.width = width;
   options.height = for_page ? 300 : 430;
   options.effort_unit = scene.effort_unit;
   if (for_page) {
     for (const ReportChoice& choice : scene.choices) {
-      TradeOffPick pick{.places = {}, .has_dots = choice.is_trade || options.picks.empty()};
+      ParetoPick pick{.places = {}, .has_dots = choice.is_pareto || options.picks.empty()};
       for (std::size_t i = 0; i < choice.flights.size(); ++i) {
         const Flight& flight = choice.flights[i];
         pick.places.push_back({flight.gain, flight.error, choice.efforts[i]});
@@ -365,8 +365,8 @@ std::string trade_off_figure(const ReportScene& scene, double width, bool for_pa
     options.title = "Error at arrival against control effort";
     options.subtitle = subtitle(scene);
   }
-  return draw_trade_off({trade_off_curve(comparison, 0), trade_off_curve(comparison, 1)},
-                        comparison.cloth_length, options)
+  return draw_pareto_front({pareto_front_curve(comparison, 0), pareto_front_curve(comparison, 1)},
+                           comparison.cloth_length, options)
       .svg(!for_page);
 }
 

@@ -12,7 +12,7 @@ namespace nuno {
 /// Both engines' flights at one choice of gains.
 struct ReportChoice {
   std::string label;
-  bool is_trade = false;  ///< a point of the first engine's best trades, to be picked there
+  bool is_pareto = false;  ///< a point of the first engine's best pareto, to be picked there
   std::vector<figures::Flight> flights;  ///< of the first engine and the second
   std::vector<double> efforts;           ///< theirs
 };
@@ -28,7 +28,7 @@ struct ReportScene {
 };
 
 /// Flies what the page plays: each engine at its best gain, both at the same gains, some of them
-/// along the best trades of error for effort.
+/// along the best pareto of error for effort.
 ReportScene make_report_scene(const Comparison& comparison, const Backend& first,
                               const Backend& second);
 
@@ -36,7 +36,7 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
 std::string gain_figure(const ReportScene& scene, double width, bool for_page);
 
 /// Error against effort of a comparison, in the same way; the page's has the choices to pick.
-std::string trade_off_figure(const ReportScene& scene, double width, bool for_page);
+std::string pareto_figure(const ReportScene& scene, double width, bool for_page);
 
 /// The whole page, which needs nothing else.
 std::string report_page(const std::vector<ReportScene>& scenes);

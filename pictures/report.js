@@ -67,7 +67,7 @@ class SceneView {
     this.find('gains').addEventListener('change', (event) => {
       this.choose(Number(event.target.value));
     });
-    this.find('trade-off').addEventListener('click', (event) => this.pick(event));
+    this.find('pareto-front').addEventListener('click', (event) => this.pick(event));
     this.find('most').addEventListener('click', () => {
       this.pause();
       this.show(this.most.time);
@@ -123,7 +123,7 @@ class SceneView {
     if (this.plot) this.drawOver();
   }
 
-  /// The dot of the trade-off next to a click, if one is near: its button among the gains, so that
+  /// The dot of the pareto-front next to a click, if one is near: its button among the gains, so that
   /// keys go on from there.
   pick(click) {
     let [choice, nearest] = [null, 24];

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <nuno/pareto_front.h>
 #include <nuno/scene_file.h>
-#include <nuno/trade_off.h>
 
 #include <algorithm>
 #include <chrono>
@@ -13,7 +13,7 @@
 
 #include <nuno/conditioning.h>
 #include <nuno/progress.h>
-#include "studio/flight.h"
+#include "studio/studio_rollout.h"
 #include "studio/throw.h"
 
 namespace nuno::studio {
@@ -61,11 +61,11 @@ Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
 
 Json to_json(const RefineSummary& refinement) {
   Points at_arrival = Points::Zero(2, refinement.flight.final.cols());
-  for (const Points& offset : refinement.aim_offset) at_arrival += offset;
+  for (const Points& offset : refinement.reference_correction) at_arrival += offset;
   Json result = {{"status", refinement.converged ? "converged" : "nearest"},
                  {"largest_offset", at_arrival.colwise().norm().maxCoeff()},
                  {"rollouts", refinement.rollouts},
-                 {"tangents", refinement.tangents},
+                 {"jacobians", refinement.jacobians},
                  {"seconds", refinement.seconds},
                  {"reason", refinement.reason}};
   if (std::isfinite(refinement.error_before)) result["error_before"] = refinement.error_before;
@@ -130,8 +130,8 @@ Answer throw_answer(const Request& request, std::optional<double> alpha) {
   return {.body = drawable(done, options.optimizer, frames, start)};
 }
 
-/// How many gains a trade-off tries: fewer of a scene whose rollouts take long.
-Index gains_of_trade_off(const Backend& backend) {
+/// How many gains a pareto-front tries: fewer of a scene whose rollouts take long.
+Index gains_of_pareto_front(const Backend& backend) {
   const double most_work = backend.name() == "native" ? 1e9 : 5e7;
   return static_cast<Index>(std::clamp(most_work / work_of(backend), 8.0, 64.0));
 }
@@ -172,14 +172,14 @@ Answer simulate_answer(const Request& request) {
   return throw_answer(request, request.options.alpha.value_or(0));
 }
 
-Answer trade_off_answer(const Request& request) {
+Answer pareto_front_answer(const Request& request) {
   const SceneFile file = read_scene(request);
   const auto backend = make_backend(request.options.backend, file);
   require_quick(file, *backend, request.options);
   request.turn.check();
   Json points = Json::array();
-  for (const TradeOffPoint& point :
-       trade_off(*backend, gains_of_trade_off(*backend), [&] { request.turn.check(); })) {
+  for (const ParetoPoint& point :
+       pareto_front(*backend, gains_of_pareto_front(*backend), [&] { request.turn.check(); })) {
     points.push_back(
         {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
   }
@@ -187,7 +187,7 @@ Answer trade_off_answer(const Request& request) {
                         {"backend", backend->name()},
                         {"cloth_length", backend->problem().cloth().size},
                         {"effort_unit", effort_unit(backend->problem())},
-                        {"trade_off", points}})};
+                        {"pareto_front", points}})};
 }
 
 }  // namespace nuno::studio

@@ -30,6 +30,6 @@ Answer progress_answer(const Request& request);
 Answer scene_answer(const Request& request);
 Answer optimize_answer(const Request& request);
 Answer simulate_answer(const Request& request);
-Answer trade_off_answer(const Request& request);
+Answer pareto_front_answer(const Request& request);
 
 }  // namespace nuno::studio

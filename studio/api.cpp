@@ -29,7 +29,7 @@ const std::array<Route, 9> routes = {{
      {"page", "backend", "optimizer", "warm_start", "refine", "frames", "after"},
      optimize_answer},
     {"POST", "/api/simulate", {"page", "backend", "alpha", "frames", "after"}, simulate_answer},
-    {"POST", "/api/trade_off", {"page", "backend"}, trade_off_answer},
+    {"POST", "/api/pareto_front", {"page", "backend"}, pareto_front_answer},
     {"POST", "/api/result", {"page", "backend", "optimizer", "alpha", "refine"}, result_answer},
     {"POST", "/api/film", {"page", "backend", "optimizer", "alpha", "refine"}, film_answer},
     {"POST", "/api/report", {"page"}, report_answer},

@@ -107,7 +107,7 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
                     "this is for nuno optimize",
                     file.path, file.scene.particles, backend.steps(), backend.name()));
   }
-  if (options.refine) require_few_particles_to_aim(file);
+  if (options.refine) require_few_particles_to_refine(file);
   if (options.after > most_flights_after * file.scene.arrival_time) {
     throw InputError(fmt::format("after: {} is not <= {}, {} arrival times", options.after,
                                  most_flights_after * file.scene.arrival_time, most_flights_after));

@@ -63,10 +63,10 @@ Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrame
   }
   turn.check();
   if (options.refine) {
-    RefineSummary refined = aim_off(options.backend, file, {}, [&] { turn.check(); });
+    RefineSummary refined = refine_on(options.backend, file, {}, [&] { turn.check(); });
     if (refined.flight.error.mean < rollout(*result.backend, gain).error.mean) {
       gain = refined.flight.gains.rest;
-      file.problem.aim_offset = refined.aim_offset;
+      file.problem.reference_correction = refined.reference_correction;
       result.refined = std::move(refined);
       result.backend = made_ready();
     }

@@ -71,7 +71,7 @@ TEST(Box2dHinge, TheSpringPairHasTheMomentOfItsGeometryToTheEndOfItsRange) {
         measured_moment(bent(angle), Points::Zero(2, 3), cloth, Hinge::spring_pair);
     // Single precision of the springs' lengths, 1e-7 of up to 0.01 that they are stretched.
     EXPECT_NEAR(moment, geometry, 3e-4 * std::abs(law)) << angle;
-    EXPECT_NEAR(moment, law, 0.02 * std::abs(law)) << angle;  // what the header promises
+    EXPECT_NEAR(moment, law, 0.02 * std::abs(law)) << angle;  // what the header says
   }
 }
 

@@ -41,7 +41,7 @@ TEST_F(ComparisonOfEngines, OfAFolderHasItsScenesInAlphabeticalOrder) {
   EXPECT_EQ(comparison["scenes"][0]["scene"], "flat");
   EXPECT_EQ(comparison["scenes"][1]["scene"], "soft");
   for (const char* figure :
-       {"01-flat-gain", "01-flat-trade-off", "01-flat-flight", "02-soft-gain"}) {
+       {"01-flat-gain", "01-flat-pareto-front", "01-flat-flight", "02-soft-gain"}) {
     const fs::path file = output("a/b/figures") / (std::string(figure) + ".svg");
     EXPECT_TRUE(fs::exists(file)) << file;
   }

@@ -108,10 +108,10 @@ TEST(GroupedControl, PullsEveryModeWithTheGainOfItsGroup) {
                          (static_cast<double>(i) + 0.5) / static_cast<double>(N));
     }
     const double alpha = alphas[j <= 2 ? 0 : j <= 5 ? 1 : 2];
-    const Eigen::Vector2d miss(0.1, -0.2), drift(-3, 2);
-    const Points force = force_on(problem, gains, problem.target - miss * mode, drift * mode);
+    const Eigen::Vector2d residual(0.1, -0.2), drift(-3, 2);
+    const Points force = force_on(problem, gains, problem.target - residual * mode, drift * mode);
     const Points expected =
-        (alpha * miss - shape_damping(problem.damping_ratio, alpha, mass) * drift) * mode;
+        (alpha * residual - shape_damping(problem.damping_ratio, alpha, mass) * drift) * mode;
     EXPECT_LT((force - expected).cwiseAbs().maxCoeff(), 1e-14) << "mode " << j;
   }
 }
@@ -158,7 +158,7 @@ TEST(GroupedControl, SwingsAModeAtTheFrequencyOfItsGroup) {
   }
 }
 
-TEST(GroupedFlight, HasTheSameBitsInTheBatchAndStepByStep) {
+TEST(GroupedRollouts, HasTheSameBitsInTheBatchAndStepByStep) {
   for (const Problem& problem : {hold_problem(), morph_problem()}) {
     const auto backend = native::make_backend(problem);
     for (const Gains& gains : unlike_gains(problem)) {
@@ -171,7 +171,7 @@ TEST(GroupedFlight, HasTheSameBitsInTheBatchAndStepByStep) {
   }
 }
 
-TEST(GroupedFlight, OfOneGroupIsTheFlightOfOneGain) {
+TEST(GroupedRollouts, OfOneGroupIsTheFlightOfOneGain) {
   const auto backend = native::make_backend(morph_problem());
   const std::vector<double> alphas = {0.1, 0.7};
   const std::vector<Gains> gains(alphas.begin(), alphas.end());
@@ -180,12 +180,12 @@ TEST(GroupedFlight, OfOneGroupIsTheFlightOfOneGain) {
   const std::vector<ErrorSample> of_groups = backend->error_samples(gains);
   for (std::size_t i = 0; i < alphas.size(); ++i) {
     EXPECT_EQ(of_groups[i].error, of_one[i].error);
-    ASSERT_EQ(of_groups[i].slopes.size(), 1u);
-    EXPECT_EQ(of_groups[i].slopes[0].error, of_one[i].slopes[0].error);
+    ASSERT_EQ(of_groups[i].derivatives.size(), 1u);
+    EXPECT_EQ(of_groups[i].derivatives[0].error, of_one[i].derivatives[0].error);
   }
 }
 
-TEST(GroupedFlight, WithEqualGainsArrivesLikeOneGain) {
+TEST(GroupedRollouts, WithEqualGainsArrivesLikeOneGain) {
   for (const Problem& problem : {hold_problem(), morph_problem()}) {
     const auto backend = native::make_backend(problem);
     const double gain = 5 * gain_scale(problem);
@@ -196,13 +196,13 @@ TEST(GroupedFlight, WithEqualGainsArrivesLikeOneGain) {
   }
 }
 
-TEST(GroupedFlight, KnowsTheSlopeByEveryGain) {
+TEST(GroupedRollouts, KnowsTheDerivativeByEveryGain) {
   for (const Problem& problem : {hold_problem(), morph_problem()}) {
     const auto backend = native::make_backend(problem);
     for (const Gains& gains : unlike_gains(problem)) {
       const ErrorSample found = backend->error_samples({&gains, 1}).front();
       const std::vector<double> groups = gains.groups();
-      ASSERT_EQ(found.slopes.size(), groups.size());
+      ASSERT_EQ(found.derivatives.size(), groups.size());
       for (std::size_t k = 0; k < groups.size(); ++k) {
         const double d = 3e-4 * groups[k];
         std::vector<Gains> around;
@@ -215,13 +215,14 @@ TEST(GroupedFlight, KnowsTheSlopeByEveryGain) {
         const double difference = (e[0] - 8 * e[1] + 8 * e[2] - e[3]) / (12 * d);
         // Fourth-order differences over 3e-4: at 1e-3 the curviest is 2e-5 off, at 1e-4 rounding is
         // 1e-6 of the slightest.
-        EXPECT_NEAR(found.slopes[k].error / difference, 1, 1e-6) << k << " of " << groups.size();
+        EXPECT_NEAR(found.derivatives[k].error / difference, 1, 1e-6)
+            << k << " of " << groups.size();
       }
     }
   }
 }
 
-TEST(GroupedFlight, BringsTheCentroidHomeOnEveryEngine) {
+TEST(GroupedRollouts, BringsTheCentroidHomeOnEveryEngine) {
   const Problem problem = hold_problem();
   for (const Engine& engine : {native_engine, box2d_weld_engine}) {
     const auto backend = engine.make(problem, std::nullopt);
@@ -231,7 +232,7 @@ TEST(GroupedFlight, BringsTheCentroidHomeOnEveryEngine) {
   }
 }
 
-TEST(GroupedFlight, EndsInTheSameShapeOnBothEngines) {
+TEST(GroupedRollouts, EndsInTheSameShapeOnBothEngines) {
   ChainScene scene = scene_library::straight_to_s();
   scene.launch = Launch::inextensible;
   const Problem problem = make_problem(scene);

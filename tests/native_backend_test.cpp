@@ -262,7 +262,7 @@ TEST(NativeBatch, GivesTheBitsOfOneRolloutEach) {
   }
 }
 
-TEST(NativeBatch, KnowsTheSlopeOfTheError) {
+TEST(NativeBatch, KnowsTheDerivativeOfTheError) {
   const Problem problem = make_problem(scene_library::straight_to_s());
   const auto backend = native::make_backend(problem);
   std::vector<double> gains;
@@ -273,8 +273,8 @@ TEST(NativeBatch, KnowsTheSlopeOfTheError) {
     const std::vector<double> around = backend->errors(
         std::vector<double>{gains[i] - 2 * d, gains[i] - d, gains[i] + d, gains[i] + 2 * d});
     const double difference = (around[0] - 8 * around[1] + 8 * around[2] - around[3]) / (12 * d);
-    // Fourth-order differences: rounding 1e-14/d = 1e-7 of slopes of order 1.
-    EXPECT_NEAR(samples[i].slopes[0].error, difference, 1e-6 * std::abs(difference) + 1e-7)
+    // Fourth-order differences: rounding 1e-14/d = 1e-7 of derivatives of order 1.
+    EXPECT_NEAR(samples[i].derivatives[0].error, difference, 1e-6 * std::abs(difference) + 1e-7)
         << gains[i];
     EXPECT_EQ(samples[i].error, backend->errors({&gains[i], 1}).front());
   }

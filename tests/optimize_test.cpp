@@ -65,7 +65,7 @@ TEST(SteepestDescent, CountsEveryRolloutAndKeepsItsBudget) {
                                                    }),
                                                    options);
   EXPECT_EQ(summary.evaluations, rollouts);
-  EXPECT_LE(rollouts, options.largest_evaluations + 2);  // a slope takes two at once
+  EXPECT_LE(rollouts, options.largest_evaluations + 2);  // a derivative takes two at once
   EXPECT_EQ(summary.status, OptimizeStatus::budget);
   EXPECT_LT(summary.error, bowl(0));  // the best found is still given
 }
@@ -141,18 +141,18 @@ TEST(GlobalSearch, StartsWarmInTheValleyOfTheLastOptimum) {
 
 /// An engine with derivatives, by where its particles arrive [2 × N] as a function of u = √α and
 /// the derivative of that.
-Objective arriving(const std::function<Points(double)>& miss,
-                   const std::function<Points(double)>& miss_over_u) {
+Objective arriving(const std::function<Points(double)>& residual,
+                   const std::function<Points(double)>& residual_over_u) {
   const auto mean = [](const Points& points) { return points.colwise().norm().mean(); };
-  Objective objective = made_of([=](double gain) { return mean(miss(std::sqrt(gain))); });
+  Objective objective = made_of([=](double gain) { return mean(residual(std::sqrt(gain))); });
   objective.samples = [=](std::span<const double> gains) {
     std::vector<ErrorSample> samples;
     for (const double gain : gains) {
       const double u = std::sqrt(gain);
       ErrorSample sample;
-      sample.miss = miss(u);
-      sample.error = mean(sample.miss);
-      sample.slopes.emplace_back().miss = miss_over_u(u) / (2 * std::max(u, 1e-9));
+      sample.residual = residual(u);
+      sample.error = mean(sample.residual);
+      sample.derivatives.emplace_back().residual = residual_over_u(u) / (2 * std::max(u, 1e-9));
       samples.push_back(sample);
     }
     return samples;
@@ -208,8 +208,8 @@ TEST(GlobalSearch, StepsOverSamplesThatDiverge) {
 
 TEST(GlobalSearch, SaysWhenTheRoundsRanOut) {
   const auto wavy = [](double u) { return Points{{std::sin(40 * u), u - 3}, {0, 0}}; };
-  const auto slope = [](double u) { return Points{{40 * std::cos(40 * u), 1}, {0, 0}}; };
-  Objective objective = arriving(wavy, slope);
+  const auto derivative = [](double u) { return Points{{40 * std::cos(40 * u), 1}, {0, 0}}; };
+  Objective objective = arriving(wavy, derivative);
   objective.largest_gain = 100;
   EXPECT_EQ(global_search(objective, {.rounds = 1}).status, OptimizeStatus::budget);
 }

@@ -141,7 +141,7 @@ TEST(MorphControl, GivesTheSameBitsInABatch) {
   }
 }
 
-TEST(MorphControl, KnowsItsSlope) {
+TEST(MorphControl, KnowsItsDerivative) {
   const auto backend = native::make_backend(make_problem(morph_scene("line", "3")));
   for (const double gain : {0.1, 0.5, 2.0}) {
     const double d = 1e-4 * gain;
@@ -149,7 +149,7 @@ TEST(MorphControl, KnowsItsSlope) {
         backend->errors(std::vector<double>{gain - 2 * d, gain - d, gain + d, gain + 2 * d});
     const double difference = (around[0] - 8 * around[1] + 8 * around[2] - around[3]) / (12 * d);
     const ErrorSample sample = backend->error_samples({&gain, 1}).front();
-    EXPECT_NEAR(sample.slopes[0].error, difference, 1e-6 * std::abs(difference));
+    EXPECT_NEAR(sample.derivatives[0].error, difference, 1e-6 * std::abs(difference));
   }
 }
 

@@ -1,9 +1,9 @@
 #include <nuno/box2d.h>
 #include <nuno/native.h>
+#include <nuno/pareto_front.h>
 #include <nuno/reference_motion.h>
 #include <nuno/refine.h>
 #include <nuno/scene_file.h>
-#include <nuno/trade_off.h>
 
 #include <gtest/gtest.h>
 
@@ -42,13 +42,13 @@ Problem reachable(Problem problem) {
 }
 
 /// The library's scene at the gain of refining.
-double following_gain_of(const Problem& problem) { return following_gain(*on_native(problem)); }
+double tracking_gain_of(const Problem& problem) { return tracking_gain(*on_native(problem)); }
 
-/// One waved shape for each of aim_powers, none like another.
-AimDirections one_for_each_power(Index particles) {
-  AimDirections directions;
-  directions.shapes.resize(2 * particles, static_cast<Index>(aim_powers.size()));
-  for (std::size_t power = 0; power < aim_powers.size(); ++power) {
+/// One waved shape for each of correction_powers, none like another.
+CorrectionDirections one_for_each_power(Index particles) {
+  CorrectionDirections directions;
+  directions.shapes.resize(2 * particles, static_cast<Index>(correction_powers.size()));
+  for (std::size_t power = 0; power < correction_powers.size(); ++power) {
     const auto k = static_cast<Index>(power);
     directions.powers.push_back(k);
     for (Index i = 0; i < 2 * particles; ++i) {
@@ -58,52 +58,53 @@ AimDirections one_for_each_power(Index particles) {
   return directions;
 }
 
-TEST(FlightTangent, IsTheDerivativeByCentralDifferences) {
+TEST(RolloutJacobian, IsTheDerivativeByCentralDifferences) {
   for (const Reference reference : {Reference::hold, Reference::morph}) {
     for (const Launch launch : {Launch::ballistic, Launch::inextensible}) {
       Problem problem = morph_problem(4);
       problem.reference = reference;
       problem.launch = launch;
-      problem.aim_offset.assign(aim_powers.size(), Points::Zero(2, 32));
+      problem.reference_correction.assign(correction_powers.size(), Points::Zero(2, 32));
       const double gain = 0.3;
-      const AimDirections directions = one_for_each_power(32);
-      const FlightTangent tangent = on_native(problem)->flight_tangent(gain, directions);
-      for (std::size_t power = 0; power < aim_powers.size(); ++power) {
+      const CorrectionDirections directions = one_for_each_power(32);
+      const RolloutJacobian jacobian = on_native(problem)->jacobian(gain, directions);
+      for (std::size_t power = 0; power < correction_powers.size(); ++power) {
         const auto column = static_cast<Index>(power);
         const double d = 2e-6;
         Vector arrival = Vector::Zero(64);
-        Vector forces = Vector::Zero(tangent.forces.size());
+        Vector forces = Vector::Zero(jacobian.forces.size());
         const std::pair<double, double> stencil[] = {{-2, 1}, {-1, -8}, {1, 8}, {2, -1}};
         for (const auto& [steps, weight] : stencil) {
           Problem aside = problem;
-          aside.aim_offset[power] = steps * d * directions.shapes.col(column).reshaped(2, 32);
+          aside.reference_correction[power] =
+              steps * d * directions.shapes.col(column).reshaped(2, 32);
           const auto backend = on_native(aside);
           arrival += weight * rollout(*backend, gain).final.reshaped() / (12 * d);
-          forces += weight * backend->flight_tangent(gain, directions).forces / (12 * d);
+          forces += weight * backend->jacobian(gain, directions).forces / (12 * d);
         }
         // Fourth-order differences over micrometres: a launch that stretches shakes the cloth, and
         // larger ones show it; rounding 1e-14/1e-6.
-        EXPECT_LT((tangent.arrival.col(column) - arrival).norm(), 1e-6 * arrival.norm()) << power;
-        EXPECT_LT((tangent.forces_tangent.col(column) - forces).norm(), 1e-6 * forces.norm())
+        EXPECT_LT((jacobian.arrival.col(column) - arrival).norm(), 1e-6 * arrival.norm()) << power;
+        EXPECT_LT((jacobian.forces_jacobian.col(column) - forces).norm(), 1e-6 * forces.norm())
             << power;
       }
     }
   }
 }
 
-TEST(FlightTangent, HasTheForcesOfTheControlEffort) {
+TEST(RolloutJacobian, HasTheForcesOfTheControlEffort) {
   const Problem problem = morph_problem(4);
   const auto backend = on_native(problem);
-  const double gain = following_gain(*backend);
-  const FlightTangent tangent = backend->flight_tangent(gain, one_for_each_power(32));
+  const double gain = tracking_gain(*backend);
+  const RolloutJacobian jacobian = backend->jacobian(gain, one_for_each_power(32));
   // Two dozen samples of a smooth flight.
-  EXPECT_NEAR(tangent.forces.norm(), rollout(*backend, gain).control_effort, 0.02);
+  EXPECT_NEAR(jacobian.forces.norm(), rollout(*backend, gain).control_effort, 0.02);
 }
 
 TEST(Refine, ArrivesExactlyWhereTheTargetIsWithinReach) {
   for (const std::size_t which : {0u, 4u, 7u, 15u}) {
     const Problem problem = reachable(morph_problem(which));
-    const RefineSummary summary = refine(problem, following_gain_of(problem), on_native, on_native);
+    const RefineSummary summary = refine(problem, tracking_gain_of(problem), on_native, on_native);
     EXPECT_TRUE(summary.converged) << summary.reason;
     EXPECT_LT(summary.flight.error.mean, 1e-9 * problem.chain().size);
     EXPECT_GT(summary.error_before, 1e-4);
@@ -114,7 +115,7 @@ TEST(Refine, ArrivesWithLessEffortThanAPlainFlightNeedsToComeNear) {
   for (const std::size_t which : {2u, 3u, 6u, 14u}) {  // M, N, W and S to 2
     const Problem problem = reachable(morph_problem(which));
     const auto backend = on_native(problem);
-    const RefineSummary summary = refine(problem, following_gain(*backend), on_native, on_native);
+    const RefineSummary summary = refine(problem, tracking_gain(*backend), on_native, on_native);
     EXPECT_TRUE(summary.converged) << summary.reason;
     // The plain control at 300 times as much gain is still a part in a thousand off.
     const Rollout plain = rollout(*backend, backend->largest_gain());
@@ -125,7 +126,7 @@ TEST(Refine, ArrivesWithLessEffortThanAPlainFlightNeedsToComeNear) {
 
 TEST(Refine, IsNearerWithMoreEffortAndKeepsItsLimit) {
   const Problem problem = reachable(morph_problem(3));
-  const double gain = following_gain_of(problem);
+  const double gain = tracking_gain_of(problem);
   double last = std::numeric_limits<double>::infinity();
   for (const double limit : {0.4, 0.6, 0.9, 1.3}) {
     const RefineSummary summary =
@@ -139,11 +140,11 @@ TEST(Refine, IsNearerWithMoreEffortAndKeepsItsLimit) {
 
 TEST(Refine, LeavesAFlightThatForgetsHowItStarted) {
   const Problem problem = reachable(morph_problem(3));
-  const double gain = following_gain_of(problem);
-  Problem aimed = problem;
+  const double gain = tracking_gain_of(problem);
+  Problem corrected = problem;
   const RefineSummary summary = refine(problem, gain, on_native, on_native);
-  aimed.aim_offset = summary.aim_offset;
-  const auto backend = on_native(aimed);
+  corrected.reference_correction = summary.reference_correction;
+  const auto backend = on_native(corrected);
   EXPECT_EQ(rollout(*backend, gain).final, summary.flight.final);  // the offset says it all
   EXPECT_LT(sensitivity(*backend, summary.flight), 0.1);
 }
@@ -151,7 +152,7 @@ TEST(Refine, LeavesAFlightThatForgetsHowItStarted) {
 TEST(Refine, ComesNearerToATargetOutOfReach) {
   // Sharp corners: some of its segments are a third of the cloth's.
   const Problem problem = make_problem(read_scene(NUNO_SCENES "/nuno/n1.json"));
-  const RefineSummary summary = refine(problem, following_gain_of(problem), on_native, on_native);
+  const RefineSummary summary = refine(problem, tracking_gain_of(problem), on_native, on_native);
   EXPECT_FALSE(summary.converged);
   EXPECT_LT(summary.flight.error.mean, 0.5 * summary.error_before);
   EXPECT_LT(summary.flight.max_strain, 0.05);  // and is not squeezed into it, which takes 0.5
@@ -160,7 +161,7 @@ TEST(Refine, ComesNearerToATargetOutOfReach) {
 TEST(Refine, SaysWhereItFindsNoFlightWithinItsLimit) {
   const Problem problem = morph_problem(14);  // S to 2
   const RefineSummary summary =
-      refine(problem, following_gain_of(problem), on_native, on_native, {.effort_limit = 0.01});
+      refine(problem, tracking_gain_of(problem), on_native, on_native, {.effort_limit = 0.01});
   EXPECT_FALSE(summary.converged);
   EXPECT_EQ(summary.reason, "no flight of so little effort was found");
 }
@@ -176,32 +177,32 @@ TEST(Refine, ImprovesThePapersControlToo) {
 TEST(Refine, CarriesOverToTheOtherEngineAndIsCorrectedThere) {
   const Problem problem = reachable(morph_problem(2));
   const double length = problem.chain().size;
-  const double gain = following_gain_of(problem);
+  const double gain = tracking_gain_of(problem);
   const RefineSummary answer = refine(problem, gain, on_native, on_native);
-  Problem aimed = problem;
-  aimed.aim_offset = answer.aim_offset;
-  const double replayed = rollout(*on_box2d(aimed), gain).error.mean;
+  Problem corrected = problem;
+  corrected.reference_correction = answer.reference_correction;
+  const double replayed = rollout(*on_box2d(corrected), gain).error.mean;
   EXPECT_LT(replayed, 1e-2 * length);
-  const RefineSummary carried = carry_over(problem, answer, on_box2d, on_native);
-  EXPECT_TRUE(carried.converged);
-  EXPECT_LT(carried.flight.error.mean, 0.3 * replayed);
-  EXPECT_LE(carried.rollouts, answer.rollouts + 7);
-  EXPECT_EQ(carried.error_before, rollout(*on_box2d(problem), gain).error.mean);
-  aimed.aim_offset = carried.aim_offset;
-  EXPECT_EQ(rollout(*on_box2d(aimed), gain).final, carried.flight.final);
+  const RefineSummary transferred = transfer(problem, answer, on_box2d, on_native);
+  EXPECT_TRUE(transferred.converged);
+  EXPECT_LT(transferred.flight.error.mean, 0.3 * replayed);
+  EXPECT_LE(transferred.rollouts, answer.rollouts + 7);
+  EXPECT_EQ(transferred.error_before, rollout(*on_box2d(problem), gain).error.mean);
+  corrected.reference_correction = transferred.reference_correction;
+  EXPECT_EQ(rollout(*on_box2d(corrected), gain).final, transferred.flight.final);
 }
 
 TEST(Refine, IsOnlyFlownOnTheOtherEngineUnderAnEffortLimit) {
   const Problem problem = reachable(morph_problem(4));
-  const double gain = following_gain_of(problem);
+  const double gain = tracking_gain_of(problem);
   const RefineOptions limited = {.effort_limit = 0.5};
   const RefineSummary answer = refine(problem, gain, on_native, on_native, limited);
-  const RefineSummary carried = carry_over(problem, answer, on_box2d, on_native, limited);
-  EXPECT_EQ(carried.aim_offset, answer.aim_offset);
-  EXPECT_EQ(carried.rollouts, answer.rollouts + 2);
-  EXPECT_NE(carried.flight.final, answer.flight.final);
-  EXPECT_FALSE(carried.converged);
-  EXPECT_NE(carried.reason, "arrived within the tolerance");
+  const RefineSummary transferred = transfer(problem, answer, on_box2d, on_native, limited);
+  EXPECT_EQ(transferred.reference_correction, answer.reference_correction);
+  EXPECT_EQ(transferred.rollouts, answer.rollouts + 2);
+  EXPECT_NE(transferred.flight.final, answer.flight.final);
+  EXPECT_FALSE(transferred.converged);
+  EXPECT_NE(transferred.reason, "arrived within the tolerance");
 }
 
 TEST(Refine, LeavesTheCentroidWhereItWas) {
@@ -209,9 +210,9 @@ TEST(Refine, LeavesTheCentroidWhereItWas) {
   EXPECT_LT(refine(problem, 2, on_native, on_native).flight.error.centroid, 1e-10);
 }
 
-TEST(TradeOff, FallsInErrorAsItRisesInEffort) {
+TEST(ParetoFront, FallsInErrorAsItRisesInEffort) {
   const auto backend = on_native(morph_problem(0));
-  const std::vector<TradeOffPoint> curve = trade_off(*backend, 24);
+  const std::vector<ParetoPoint> curve = pareto_front(*backend, 24);
   ASSERT_GT(curve.size(), 5u);
   EXPECT_EQ(curve.front().gain, 0);
   for (std::size_t i = 1; i < curve.size(); ++i) {
@@ -220,27 +221,28 @@ TEST(TradeOff, FallsInErrorAsItRisesInEffort) {
   }
 }
 
-TEST(TradeOff, LeavesOutWhatIsBeatenInBothAndWhatDiverged) {
+TEST(ParetoFront, LeavesOutWhatIsBeatenInBothAndWhatDiverged) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const std::vector<TradeOffPoint> curve = best_trades({{.gain = 0, .error = 5, .effort = 0},
-                                                        {.gain = 1, .error = 3, .effort = 2},
-                                                        {.gain = 2, .error = 4, .effort = 3},
-                                                        {.gain = 3, .error = 3, .effort = 4},
-                                                        {.gain = 4, .error = 2, .effort = 6},
-                                                        {.gain = 5, .error = 1, .effort = 6},
-                                                        {.gain = 6, .error = 4.5, .effort = 1},
-                                                        {.gain = 7, .error = infinity, .effort = 0},
-                                                        {.gain = 8, .error = 6, .effort = 0}});
+  const std::vector<ParetoPoint> curve =
+      pareto_optimal({{.gain = 0, .error = 5, .effort = 0},
+                      {.gain = 1, .error = 3, .effort = 2},
+                      {.gain = 2, .error = 4, .effort = 3},
+                      {.gain = 3, .error = 3, .effort = 4},
+                      {.gain = 4, .error = 2, .effort = 6},
+                      {.gain = 5, .error = 1, .effort = 6},
+                      {.gain = 6, .error = 4.5, .effort = 1},
+                      {.gain = 7, .error = infinity, .effort = 0},
+                      {.gain = 8, .error = 6, .effort = 0}});
   std::vector<double> gains;
-  for (const TradeOffPoint& point : curve) gains.push_back(point.gain);
+  for (const ParetoPoint& point : curve) gains.push_back(point.gain);
   EXPECT_EQ(gains, (std::vector<double>{0, 6, 1, 5}));
 }
 
-TEST(TradeOff, FindsTheLeastEffortWithinAnErrorLimit) {
+TEST(ParetoFront, FindsTheLeastEffortWithinAnErrorLimit) {
   const auto backend = on_native(morph_problem(0));
-  const std::vector<TradeOffPoint> curve = trade_off(*backend, 24);
+  const std::vector<ParetoPoint> curve = pareto_front(*backend, 24);
   const double limit = 0.01;
-  const std::optional<TradeOffPoint> point = least_effort(*backend, curve, limit);
+  const std::optional<ParetoPoint> point = least_effort(*backend, curve, limit);
   ASSERT_TRUE(point);
   EXPECT_LE(point->error, limit);
   EXPECT_NEAR(point->error, limit, 1e-6);  // no more effort than that takes
@@ -248,24 +250,24 @@ TEST(TradeOff, FindsTheLeastEffortWithinAnErrorLimit) {
   EXPECT_FALSE(least_effort(*backend, curve, 1e-9));
 }
 
-TEST(TradeOff, FindsTheLeastErrorWithinAnEffortLimit) {
+TEST(ParetoFront, FindsTheLeastErrorWithinAnEffortLimit) {
   const auto backend = on_native(morph_problem(0));
-  const std::vector<TradeOffPoint> curve = trade_off(*backend, 24);
-  const TradeOffPoint point = least_error(*backend, curve, 0.2);
+  const std::vector<ParetoPoint> curve = pareto_front(*backend, 24);
+  const ParetoPoint point = least_error(*backend, curve, 0.2);
   EXPECT_LE(point.effort, 0.2);
   EXPECT_NEAR(point.effort, 0.2, 1e-6);
   EXPECT_EQ(least_error(*backend, curve, 1e9).gain, curve.back().gain);
   EXPECT_EQ(least_error(*backend, curve, 0).gain, 0);
 }
 
-TEST(TradeOff, EndsWithWhatItsCallerThrows) {
+TEST(ParetoFront, EndsWithWhatItsCallerThrows) {
   struct Enough {};
   const auto backend = on_native(morph_problem(0));
   std::atomic<int> asked = 0;
-  EXPECT_THROW(trade_off(*backend, 24,
-                         [&] {
-                           if (++asked > 3) throw Enough();
-                         }),
+  EXPECT_THROW(pareto_front(*backend, 24,
+                            [&] {
+                              if (++asked > 3) throw Enough();
+                            }),
                Enough);
   // The three, and one more on every core.
   EXPECT_LE(asked, 3 + static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));

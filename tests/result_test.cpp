@@ -52,7 +52,7 @@ TEST_F(Result, OfALimitCountsEveryRollout) {
   EXPECT_EQ(result["optimization"]["evaluations"], 1 + 64 + 30);
 }
 
-TEST_F(Result, OfAimingOffWithinALimitIsNoWorseThanOfTheGainAlone) {
+TEST_F(Result, OfRefinementWithinALimitIsNoWorseThanOfTheGainAlone) {
   Json morph = read_json(scene("s-curve-32"));
   morph["reference"] = "morph";
   morph["damping_ratio"] = 0.7;
@@ -161,7 +161,7 @@ TEST_F(Result, KeepsTheLimitThatWasAskedFor) {
   const Json near = simulated({"optimize", n, "--error-limit", "0.01"});
   EXPECT_LE(near["error"]["relative"].get<double>(), 0.01);
   EXPECT_GT(near["error"]["relative"].get<double>(), 0.0099);
-  EXPECT_GT(near["optimization"]["trade_off"].size(), 10u);
+  EXPECT_GT(near["optimization"]["pareto_front"].size(), 10u);
   const Json cheap = simulated({"optimize", n, "--effort-limit", "0.2"});
   EXPECT_LE(cheap["control_effort"].get<double>(), 0.2);
   EXPECT_GT(cheap["control_effort"].get<double>(), 0.199);
@@ -169,22 +169,22 @@ TEST_F(Result, KeepsTheLimitThatWasAskedFor) {
   EXPECT_EQ(beyond["optimization"]["status"], "budget");
 }
 
-TEST_F(Result, OfAimingOffIsNearerAndSaysWhereItAimed) {
+TEST_F(Result, OfRefinementIsNearerAndSaysHowItCorrected) {
   const std::string n = scene("nuno/n1");
   const Json plain = simulated({"optimize", n});
   const Json refined = simulated({"optimize", n, "--refine"});
   EXPECT_LT(refined["error"]["mean"].get<double>(), 0.7 * plain["error"]["mean"].get<double>());
   EXPECT_LT(refined["control_effort"].get<double>(), plain["control_effort"].get<double>());
   const Json& refinement = refined["optimization"]["refinement"];
-  ASSERT_EQ(refinement["aim_offset"].size(), 4u);
-  for (const Json& offset : refinement["aim_offset"]) {
+  ASSERT_EQ(refinement["reference_correction"].size(), 4u);
+  for (const Json& offset : refinement["reference_correction"]) {
     EXPECT_EQ(offset.size(), refined["final"].size());
   }
   const Json before = simulated({"simulate", n, "--alpha", Json(refined["alpha"]).dump()});
   EXPECT_EQ(refinement["error_before"], before["error"]["mean"]);
 }
 
-TEST_F(Result, OfAimingOffKeepsTheLimitThatWasAskedFor) {
+TEST_F(Result, OfRefinementKeepsTheLimitThatWasAskedFor) {
   const std::string n = scene("nuno/n1");
   const Json exact = simulated({"optimize", n, "--refine"});
   const double effort = 0.5 * exact["control_effort"].get<double>();
@@ -221,7 +221,7 @@ TEST_F(Result, OfARobustSearchHasTheMeanErrorOverFiveStarts) {
   const Json best = simulated({"optimize", scene("s-curve-32"), "--robust"});
   const Json& optimization = best["optimization"];
   EXPECT_EQ(optimization["evaluations"].get<int>() % 5, 0);
-  // Calm, so that a disturbance of a thousandth changes little.
+  // Calm, so that a perturbation of a thousandth changes little.
   EXPECT_NEAR(optimization["robust_error"].get<double>(), best["error"]["mean"].get<double>(),
               1e-3);
   EXPECT_LT(best["sensitivity"], 10);

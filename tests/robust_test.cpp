@@ -12,9 +12,9 @@
 namespace nuno {
 namespace {
 
-TEST(RobustObjective, IsTheMeanErrorOverTheUndisturbedAndTheDisturbedStarts) {
+TEST(RobustObjective, IsTheMeanErrorOverTheUnperturbedAndThePerturbedStarts) {
   const auto backend = native::make_backend(make_problem(scene_library::straight_to_s()));
-  const RobustOptions options{.size = 2e-3, .disturbances = 3};
+  const RobustOptions options{.size = 2e-3, .perturbations = 3};
   const Objective robust = robust_objective(*backend, options);
   EXPECT_FALSE(robust.samples);
   EXPECT_EQ(robust.gain_scale, objective(*backend).gain_scale);
@@ -23,7 +23,7 @@ TEST(RobustObjective, IsTheMeanErrorOverTheUndisturbedAndTheDisturbedStarts) {
   for (std::size_t i = 0; i < gains.size(); ++i) {
     double sum = rollout(*backend, gains[i]).error.mean;
     for (const unsigned seed : {1u, 2u, 3u}) {
-      const Points start = disturbed(backend->problem(), options.size, seed);
+      const Points start = perturbed(backend->problem(), options.size, seed);
       sum += rollout(*backend, gains[i], {}, start).error.mean;
     }
     EXPECT_NEAR(errors[i], sum / 4, 1e-15) << gains[i];
@@ -37,7 +37,7 @@ TEST(RobustObjective, MovesACalmOptimumHardly) {
   EXPECT_NEAR(robust.gain, plain.gain, 0.05 * plain.gain);
 }
 
-TEST(RobustObjective, PrefersAnAnswerThatADisturbanceDoesNotDecide) {
+TEST(RobustObjective, PrefersAnAnswerThatAPerturbationDoesNotDecide) {
   // The deepest valley of this scene lies where the cloth buckles; another is nearly as deep.
   const auto backend = native::make_backend(make_problem(scene_library::figure_throws()[0]));
   const Objective averaged = robust_objective(*backend);
@@ -45,10 +45,10 @@ TEST(RobustObjective, PrefersAnAnswerThatADisturbanceDoesNotDecide) {
   const OptimizeSummary robust = global_search(averaged);
   const auto growth = [&](double gain) { return sensitivity(*backend, rollout(*backend, gain)); };
   const double fragile = averaged.errors({&plain.gain, 1}).front();
-  EXPECT_GT(fragile, 1.1 * plain.error);    // a disturbance undoes the answer
+  EXPECT_GT(fragile, 1.1 * plain.error);    // a perturbation undoes the answer
   EXPECT_LT(robust.error, 0.95 * fragile);  // on average the other one is better,
-  const double undisturbed = rollout(*backend, robust.gain).error.mean;
-  EXPECT_NEAR(robust.error, undisturbed, 0.05 * undisturbed);  // with or without disturbance,
+  const double unperturbed = rollout(*backend, robust.gain).error.mean;
+  EXPECT_NEAR(robust.error, unperturbed, 0.05 * unperturbed);  // with or without perturbation,
   EXPECT_LT(growth(robust.gain), 1e-2 * growth(plain.gain));   // and it hangs on less
 }
 

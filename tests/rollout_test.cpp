@@ -49,19 +49,19 @@ TEST(Rollout, SaysWhereAndWhyItDiverged) {
   EXPECT_EQ(flight.error.mean, std::numeric_limits<double>::infinity());
 }
 
-TEST(Disturbance, MovesByItsSizeAndStretchesNothing) {
+TEST(Perturbation, MovesByItsSizeAndStretchesNothing) {
   const Problem problem = make_problem(scene_library::family_member(5));
   const Chain& chain = problem.chain();
   for (const double size : {1e-8, 1e-4}) {
     for (const unsigned seed : {0u, 1u}) {
-      const Points moved = disturbed(problem, size, seed);
+      const Points moved = perturbed(problem, size, seed);
       const ArrivalError change = arrival_error(moved, chain.initial);
       EXPECT_NEAR(change.mean / (size * chain.size), 1, 0.01);
       EXPECT_LT(change.centroid, 1e-14);
       EXPECT_LT((segment_lengths(moved) - chain.rest_length).cwiseAbs().maxCoeff(), 1e-15);
     }
   }
-  EXPECT_GT((disturbed(problem, 1e-4, 0) - disturbed(problem, 1e-4, 1)).norm(), 1e-5);
+  EXPECT_GT((perturbed(problem, 1e-4, 0) - perturbed(problem, 1e-4, 1)).norm(), 1e-5);
 }
 
 TEST(Sensitivity, IsOneForAClothThatFliesRigidly) {

@@ -100,7 +100,7 @@ TEST_F(Studio, RefusesWithTheMessagesOfTheCommandLine) {
   Json fine = Json::parse(small_scene);
   fine["particles"] = 2000;
   fine["cloth"]["hinge_stiffness"] = 0;
-  EXPECT_NE(refused("/api/optimize?refine=1", fine.dump(), 400).find("the most to aim off with"),
+  EXPECT_NE(refused("/api/optimize?refine=1", fine.dump(), 400).find("the most to refine"),
             std::string::npos);
   EXPECT_NE(refused("/api/nothing", small_scene, 404), "");
 }
@@ -183,7 +183,7 @@ TEST_F(Studio, AnswersEveryHostileRequestAndKeepsItsMemory) {
                                      "/api/scene",
                                      "/api/optimize?backend=native&frames=3",
                                      "/api/optimize?warm_start=0.1&refine=1",
-                                     "/api/trade_off",
+                                     "/api/pareto_front",
                                      "/api/progress?page=a",
                                      "/api/about",
                                      "/"};

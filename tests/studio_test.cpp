@@ -62,13 +62,13 @@ TEST_F(Studio, AWarmStartFollowsTheBestGain) {
   const Json best = json_of(post("/api/optimize", scene));
   const std::string start = std::to_string(1.1 * best["alpha"].get<double>());
   const Json warm = json_of(post("/api/optimize?warm_start=" + start, scene));
-  // What the search promises: a thousandth of the error, and the valley is that of the best.
+  // What the search guarantees: a thousandth of the error, and the valley is that of the best.
   EXPECT_NEAR(warm["error"]["mean"].get<double>(), best["error"]["mean"].get<double>(),
               2e-3 * best["error"]["mean"].get<double>());
   EXPECT_LT(warm["optimization"]["evaluations"], best["optimization"]["evaluations"]);
 }
 
-TEST_F(Studio, AimsOffAsTheCommandLineDoes) {
+TEST_F(Studio, RefinesAsTheCommandLineDoes) {
   Json scene = Json::parse(small_scene);
   scene["reference"] = "morph";
   scene["damping_ratio"] = 0.7;
@@ -76,19 +76,19 @@ TEST_F(Studio, AimsOffAsTheCommandLineDoes) {
   const Json expected = simulated({"optimize", in_folder("scene.json"), "--refine"});
 
   const Json plain = json_of(post("/api/optimize", scene.dump()));
-  const Json aimed = json_of(post("/api/optimize?refine=1", scene.dump()));
-  EXPECT_EQ(aimed["error"], expected["error"]);
-  EXPECT_EQ(aimed["optimization"]["alpha"], plain["alpha"]);
-  EXPECT_LT(aimed["error"]["mean"], plain["error"]["mean"]);
+  const Json corrected = json_of(post("/api/optimize?refine=1", scene.dump()));
+  EXPECT_EQ(corrected["error"], expected["error"]);
+  EXPECT_EQ(corrected["optimization"]["alpha"], plain["alpha"]);
+  EXPECT_LT(corrected["error"]["mean"], plain["error"]["mean"]);
   const Json result = json_of(post("/api/result?refine=1", scene.dump()));
   EXPECT_EQ(result["final"], expected["final"]);
-  EXPECT_EQ(result["optimization"]["refinement"]["aim_offset"],
-            expected["optimization"]["refinement"]["aim_offset"]);
+  EXPECT_EQ(result["optimization"]["refinement"]["reference_correction"],
+            expected["optimization"]["refinement"]["reference_correction"]);
 }
 
 TEST_F(Studio, TradesErrorForEffort) {
-  const Json answer = json_of(post("/api/trade_off", small_scene));
-  const Json& curve = answer["trade_off"];
+  const Json answer = json_of(post("/api/pareto_front", small_scene));
+  const Json& curve = answer["pareto_front"];
   ASSERT_GT(curve.size(), 2u);
   EXPECT_EQ(curve[0]["alpha"], 0);
   EXPECT_EQ(curve[0]["control_effort"], 0);
@@ -136,7 +136,7 @@ TEST_F(Studio, AnswersManyAtOnce) {
 
 TEST_F(Studio, ANewerRequestOfAPageEndsTheOlder) {
   for (const char* path : {"/api/optimize?page=a&backend=box2d",
-                           "/api/trade_off?page=a&backend=box2d", "/api/report?page=a"}) {
+                           "/api/pareto_front?page=a&backend=box2d", "/api/report?page=a"}) {
     const Connection older(port_);
     older.send(post_text(path, long_scene));
     std::this_thread::sleep_for(300ms);

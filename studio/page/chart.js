@@ -111,7 +111,7 @@ export class Chart {
   measure() {
     if (!this.curves.length) return false;
     const points = this.curves.flatMap((curve) => curve.points);
-    // The cursor may lie beyond the curve; a throw that is aimed off, as deep below it as rounding.
+    // The cursor may lie beyond the curve; a throw that is corrected off, as deep below it as rounding.
     const along = [...points, ...(this.cursor ? [this.cursor] : [])].map(({ x }) => x).filter((x) => x > 0);
     const shares = points.map(({ y }) => y).filter((y) => y > 0);
     if (!along.length || !shares.length) return false;

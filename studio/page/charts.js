@@ -38,13 +38,13 @@ export class Charts {
   // `on_try(α, live)` as of a Chart.
   constructor(on_try) {
     this.gain = new Chart($('gain-chart'), 'values', on_try);
-    this.trade = new Chart($('trade-chart'), 'points', on_try);
+    this.pareto = new Chart($('pareto-chart'), 'points', on_try);
     this.drawn_curves = new WeakMap(); // of answers: their points and dips, made once
   }
 
   draw(colors) {
     this.draw_gain(colors);
-    this.draw_trade(colors);
+    this.draw_pareto(colors);
     for (const button of document.querySelectorAll('.best')) button.hidden = app.alpha === null;
   }
 
@@ -58,7 +58,7 @@ export class Charts {
 
   // The best throw ends the curve: more force is in vain. Between the gains of the curve it may lie in
   // a narrow valley.
-  trade_of(curve, best_throw) {
+  pareto_of(curve, best_throw) {
     const point = ({ alpha, error, control_effort }) => ({ x: control_effort, y: (error.mean ?? error) / curve.length, alpha });
     const points = curve.points.map(point);
     if (best_throw?.key !== curve.key) return { points, best: null };
@@ -96,21 +96,21 @@ export class Charts {
       (launch_only ? ` Without control ${digits(100 * launch_only.y)} %.` : '');
   }
 
-  draw_trade(colors) {
+  draw_pareto(colors) {
     const { native } = app.results;
-    const curve = native?.trade_off;
-    $('trade-unit').textContent = effort_unit();
-    this.trade.curves = curve ? [{ ...this.trade_of(curve, native.best_throw), marks: [], color: colors.a, faint: curve.key !== native.key }] : [];
+    const curve = native?.pareto_front;
+    $('pareto-unit').textContent = effort_unit();
+    this.pareto.curves = curve ? [{ ...this.pareto_of(curve, native.best_throw), marks: [], color: colors.a, faint: curve.key !== native.key }] : [];
     const flight = native?.flight;
-    this.trade.cursor = flight ? { x: flight.control_effort, y: flight.error.relative, alpha: app.alpha ?? flight.alpha } : null;
-    this.trade.draw(colors);
+    this.pareto.cursor = flight ? { x: flight.control_effort, y: flight.error.relative, alpha: app.alpha ?? flight.alpha } : null;
+    this.pareto.draw(colors);
     if (!curve || !flight) return;
-    const { first, last } = this.trade;
+    const { first, last } = this.pareto;
     const percent = ({ y }) => `${digits(100 * y)} %`;
-    $('trade-note').textContent = first === last
+    $('pareto-note').textContent = first === last
       ? 'No control does better than none.'
       : `From ${percent(first)} without force to ${percent(last)} at ${digits(last.x)} ${effort_unit()}.`;
-    const slider = $('trade-chart');
+    const slider = $('pareto-chart');
     slider.setAttribute('aria-valuemin', 0);
     slider.setAttribute('aria-valuemax', last.x);
     slider.setAttribute('aria-valuenow', flight.control_effort);

@@ -2,7 +2,7 @@
 
 import { ask, film_progress } from './client.js';
 import { file_text } from './scene.js';
-import { app, no_aiming, scene } from './state.js';
+import { app, no_refining, scene } from './state.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -72,7 +72,7 @@ export class Files {
   async make(kind, ending) {
     const engine = app.engine === 'box2d' ? 'box2d' : 'native';
     const alpha = app.alpha ?? (engine === 'box2d' && !app.own_gain ? app.results.native?.best : null) ?? null;
-    const refine = alpha === null && app.aims_off && !no_aiming();
+    const refine = alpha === null && app.refines && !no_refining();
     const parameters = kind === 'report' ? {} : { backend: engine, ...(alpha === null ? {} : { alpha }), ...(refine ? { refine: 1 } : {}) };
     const { page } = this.throws.channels.file;
     const buttons = ['result', 'report', 'film'].map((each) => $(`save-${each}`));

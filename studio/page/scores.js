@@ -1,7 +1,7 @@
 // The card of the arrival: how far off, at what force, and how quickly that was found.
 
 import { digits, metres, seconds, steady } from './numbers.js';
-import { app, effort_unit, engine_names, engines, no_aiming, shows } from './state.js';
+import { app, effort_unit, engine_names, engines, no_refining, shows } from './state.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -23,7 +23,7 @@ function score(engine, throws) {
     <dt>gain α</dt><dd>${digits(flight.alpha, 4)} N/m</dd></dl></div>`;
 }
 
-// What is left after aiming off is rounding.
+// What is left after refinement is rounding.
 const percent = (share) => (share < 1e-8 ? '0.000' : steady(100 * share));
 
 export function show_scores(throws) {
@@ -31,7 +31,7 @@ export function show_scores(throws) {
   $('scores').className = shown.length > 1 ? 'two' : '';
   $('scores').innerHTML = shown.map((engine) => score(engine, throws)).join('');
   show_timing(throws);
-  show_aiming(throws);
+  show_refining(throws);
 }
 
 function show_timing({ channels, latency }) {
@@ -46,23 +46,23 @@ function show_timing({ channels, latency }) {
   $('timing').textContent = parts.join(' · ');
 }
 
-// The control that aims off, or why there is none, and what it did.
-function show_aiming({ at_rest }) {
-  const reason = no_aiming();
-  $('aim').disabled = reason !== '';
-  $('aim').checked = app.aims_off && !reason;
-  $('aim-set').hidden = !reason || app.engine !== 'native';
+// The control that refines, or why there is none, and what it did.
+function show_refining({ at_rest }) {
+  const reason = no_refining();
+  $('refine').disabled = reason !== '';
+  $('refine').checked = app.refines && !reason;
+  $('refine-set').hidden = !reason || app.engine !== 'native';
   const refinement = app.results.native?.flight?.refinement;
-  let text = 'As an archer does in the wind: the throw aims beside the target, so that the cloth lands on it.';
+  let text = 'The motion that the cloth follows is corrected, so that the cloth lands on the target.';
   if (reason) {
     text = reason;
-  } else if (app.aims_off && refinement) {
+  } else if (app.refines && refinement) {
     const length = app.results.native.flight.cloth_length;
-    text = `${refinement.status === 'converged' ? 'Arrived' : 'As near as it can come'}: aims up to ${metres(refinement.largest_offset)} off; straight at it, ${digits((100 * refinement.error_before) / length)} %. ${refinement.rollouts} throws and ${refinement.tangents} tangents in ${seconds(refinement.seconds)}.`;
-  } else if (app.aims_off && !at_rest) {
-    text = 'Aims off once you let go.';
+    text = `${refinement.status === 'converged' ? 'Arrived' : 'As near as it can come'}: corrected by up to ${metres(refinement.largest_offset)}; straight at it, ${digits((100 * refinement.error_before) / length)} %. ${refinement.rollouts} throws and ${refinement.jacobians} Jacobians in ${seconds(refinement.seconds)}.`;
+  } else if (app.refines && !at_rest) {
+    text = 'Lands exactly once you let go.';
   }
-  if ($('aim-note').textContent !== text) $('aim-note').textContent = text;
+  if ($('refine-note').textContent !== text) $('refine-note').textContent = text;
 }
 
 let announced = '';

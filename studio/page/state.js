@@ -7,9 +7,9 @@ export const app = {
   vertex: null,
   engine: 'native', // native, box2d, over, side
   own_gain: false, // Box2D searches for itself
-  aims_off: false, // until the cloth is on the target
+  refines: false, // until the cloth is on the target
   alpha: null, // a gain tried by hand; null: the best
-  // By engine: {flight, key, stale, best, best_throw, search, curve, trade_off}; a key is the text of the scene
+  // By engine: {flight, key, stale, best, best_throw, search, curve, pareto_front}; a key is the text of the scene
   // that an answer is of.
   results: {},
   time: null, // of the flight [s]; null: the arrival
@@ -35,8 +35,8 @@ export const now = () => app.time ?? scene().arrival_time;
 // What control effort is measured in.
 export const effort_unit = () => (scene().gravity > 0 ? '× weight' : '× m·L/t₀²');
 
-// Why the cloth cannot be aimed off; empty if it can.
-export function no_aiming() {
+// Why the cloth cannot be corrected off; empty if it can.
+export function no_refining() {
   if (app.engine !== 'native') return 'It is for the native engine alone.';
   if (scene().reference !== 'morph') return 'It needs a control that follows a motion (morph).';
   if (!(scene().damping_ratio > 0)) return 'It needs a control with damping, ζ > 0.';

@@ -11,7 +11,7 @@ import { Player } from './player.js';
 import { default_scene, Document, kept_text } from './scene.js';
 import { announce, show_scores } from './scores.js';
 import { draw_stage, fit_view } from './stage.js';
-import { app, end_time, no_aiming, now, scene } from './state.js';
+import { app, end_time, no_refining, now, scene } from './state.js';
 import { Throws } from './throws.js';
 import { View } from './view.js';
 
@@ -224,27 +224,27 @@ function toggle(name) {
 function try_gain(alpha, live) {
   if (app.alpha === null && alpha === null) return;
   app.alpha = alpha;
-  app.aims_off = false; // at a gain of its own
+  app.refines = false; // at a gain of its own
   throws.request(live);
   draw_soon(true);
 }
 
-function aim_off(on) {
-  app.aims_off = on;
+function refine_on(on) {
+  app.refines = on;
   app.alpha = null;
   throws.request(false);
   draw_soon(true);
 }
 
-// The control with which a cloth can be aimed off.
-function set_up_aiming() {
+// The control with which a cloth can be corrected off.
+function set_up_refining() {
   const { reference, damping_ratio } = scene();
   scene().reference = 'morph';
   if (reference !== 'morph' || !(damping_ratio > 0)) scene().damping_ratio = usual_damping;
-  app.aims_off = no_aiming() === '';
+  app.refines = no_refining() === '';
   changed(false);
-  $('aim').disabled = false;
-  $('aim').focus();
+  $('refine').disabled = false;
+  $('refine').focus();
 }
 
 function use(new_scene, text_of_problem) {
@@ -276,7 +276,7 @@ const actions = {
   undo: () => step_history(app.doc.undo()),
   redo: () => step_history(app.doc.redo()),
   'fit-view': () => { fit_view(view); draw_soon(); },
-  'aim-set': set_up_aiming,
+  'refine-set': set_up_refining,
   play: () => player.play(!app.playing),
   new: () => use(default_scene()),
   help: () => $('help-dialog').showModal(),
@@ -295,7 +295,7 @@ for (const name of shapes) $(`select-${name}`).addEventListener('click', () => s
 for (const name of tools) $(`tool-${name}`).addEventListener('click', () => set_tool(name));
 for (const name of engine_views) $(`engine-${name}`).addEventListener('click', () => set_engine(name));
 for (const button of document.querySelectorAll('.best')) button.addEventListener('click', () => try_gain(null, false));
-$('aim').addEventListener('change', (event) => aim_off(event.target.checked));
+$('refine').addEventListener('change', (event) => refine_on(event.target.checked));
 $('own').addEventListener('change', (event) => {
   app.own_gain = event.target.checked;
   throws.request(false);
@@ -345,7 +345,7 @@ new ResizeObserver(() => {
   if (was < 10) fit_view(view);
   draw();
 }).observe($('stage'));
-for (const id of ['gain-chart', 'trade-chart']) new ResizeObserver(() => app.doc && draw_soon(true)).observe($(id));
+for (const id of ['gain-chart', 'pareto-chart']) new ResizeObserver(() => app.doc && draw_soon(true)).observe($(id));
 addEventListener('hashchange', () => {
   const text = kept_text();
   if (text && text !== app.doc.committed) files.open_text(text);

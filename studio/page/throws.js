@@ -3,7 +3,7 @@
 
 import { ask, Channel } from './client.js';
 import { Latency } from './latency.js';
-import { app, no_aiming, scene, shows, time_after } from './state.js';
+import { app, no_refining, scene, shows, time_after } from './state.js';
 
 const frames_while_moving = 12;
 const frames_per_second = 60;
@@ -23,7 +23,7 @@ export class Throws {
   constructor(on) {
     this.on = on;
     this.channels = Object.fromEntries(
-      ['native', 'box2d', 'curve', 'trade_off', 'file'].map((name) => [name, new Channel(name, () => this.settle())]));
+      ['native', 'box2d', 'curve', 'pareto_front', 'file'].map((name) => [name, new Channel(name, () => this.settle())]));
     this.latency = new Latency();
     this.rest_due = 0;
     this.at_rest = true;
@@ -54,7 +54,7 @@ export class Throws {
     const urgent = !live || this.at_rest;
     this.at_rest = !live;
     const sampled = () => live ? { frames: frames_while_moving } : { frames: frames_at_rest(), after: time_after() };
-    const aimed = () => (!live && app.aims_off && !no_aiming() ? { refine: 1 } : {});
+    const corrected = () => (!live && app.refines && !no_refining() ? { refine: 1 } : {});
     const run = (channel, path, parameters, done) => this.channels[channel].run({
       work: (page, signal) => this.ask(path, parameters, page, signal),
       done,
@@ -68,10 +68,10 @@ export class Throws {
       this.take('native', got);
       this.request_box2d(live, sampled, run);
       if (live) this.rest_due = setTimeout(() => this.request(false), rest);
-      else this.request_trade_off(run);
+      else this.request_pareto_front(run);
     };
     if (app.alpha === null) {
-      run('native', 'optimize', () => ({ ...sampled(), ...aimed(), ...(follows ? { warm_start: app.results.native.best } : {}) }), (got) => {
+      run('native', 'optimize', () => ({ ...sampled(), ...corrected(), ...(follows ? { warm_start: app.results.native.best } : {}) }), (got) => {
         this.take_search('native', got, !follows);
         after_native(got);
       });
@@ -101,10 +101,10 @@ export class Throws {
     else run('box2d', 'simulate', () => ({ backend: 'box2d', alpha: app.alpha ?? app.results.native?.best, ...sampled() }), done);
   }
 
-  request_trade_off(run) {
-    if (app.results.native?.trade_off?.key === body()) return;
-    run('trade_off', 'trade_off', () => ({}), ({ answer, key }) => {
-      app.results.native.trade_off = { points: answer.trade_off, length: answer.cloth_length, key };
+  request_pareto_front(run) {
+    if (app.results.native?.pareto_front?.key === body()) return;
+    run('pareto_front', 'pareto_front', () => ({}), ({ answer, key }) => {
+      app.results.native.pareto_front = { points: answer.pareto_front, length: answer.cloth_length, key };
       this.on.shown();
     });
   }
@@ -130,7 +130,7 @@ export class Throws {
   }
 
   failed(channel, error) {
-    if (channel === 'trade_off' || channel === 'curve') return; // the throw says what is wrong
+    if (channel === 'pareto_front' || channel === 'curve') return; // the throw says what is wrong
     this.on.trouble(error.message);
     if (app.results[channel]) app.results[channel].stale = true;
     this.on.shown();

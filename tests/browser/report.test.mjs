@@ -105,7 +105,7 @@ test('scrubbed to the arrival, it shows the errors of the comparison', async () 
   await page.close();
 });
 
-test('the cloths are drawn to scale: what they miss on the page is what it says', async () => {
+test('the cloths are drawn to scale: what they residual on the page is what it says', async () => {
   const page = await opened();
   for (let scene = 1; scene <= 4; ++scene) {
     for (const label of ['each at its own best', 'launch only']) {
@@ -153,9 +153,9 @@ function curvePoint(shownGain, scene = 1) {
 const centre = ({ x, y, width, height }) => [x + width / 2, y + height / 2];
 
 for (const viewport of [{ width: 1280, height: 900 }, { width: 390, height: 844 }]) {
-  test(`a click at a point of the trade-off flies it, at ${viewport.width} px`, async () => {
+  test(`a click at a point of the pareto-front flies it, at ${viewport.width} px`, async () => {
     const page = await opened({ viewport });
-    await part(page, 'trade-off').scrollIntoViewIfNeeded();
+    await part(page, 'pareto-front').scrollIntoViewIfNeeded();
     const dots = page.locator('#scene-1 .dots-of circle');
     const places = [];
     for (const dot of await dots.all()) places.push(centre(await dot.boundingBox()));

@@ -124,7 +124,7 @@ test('dragging the target moves it and the optimum with it', async () => {
   const [median, count] = await page.evaluate(() => [nuno_studio.latency.median, nuno_studio.latency.all.length]);
   console.log(`pointer move to the end of the frame with the new optimum: median ${median.toFixed(1)} ms over ${count} moves`);
   assert.ok(asked.some((url) => /optimize\?.*warm_start=/.test(url)), 'a hand gets a search about the last optimum');
-  assert.doesNotMatch(asked[0], /after=|refine=|box2d|trade_off/);
+  assert.doesNotMatch(asked[0], /after=|refine=|box2d|pareto_front/);
   assert.match(await page.textContent('#timing'), /drawn \d+ ms after the pointer/);
   const scene = await scene_of();
   assert.notDeepEqual(scene.target, before_drag.scene.target);
@@ -291,14 +291,14 @@ test('another scene takes nothing that was asked of the one before', async () =>
 
 test('error is traded for effort along the second curve', async () => {
   const best = await flight_of('native');
-  const trade_off = () => page.evaluate(() => nuno_studio.app.results.native.trade_off.points);
-  const chart = page.locator('#trade-chart');
+  const pareto_front = () => page.evaluate(() => nuno_studio.app.results.native.pareto_front.points);
+  const chart = page.locator('#pareto-chart');
   await chart.scrollIntoViewIfNeeded();
   const box = await chart.boundingBox();
   await page.mouse.click(box.x + 0.6 * box.width, box.y + 0.5 * box.height);
   await settled();
   const tried = await flight_of('native');
-  const point = (await trade_off()).find(({ alpha }) => alpha === tried.alpha);
+  const point = (await pareto_front()).find(({ alpha }) => alpha === tried.alpha);
   assert.deepEqual([tried.error.mean, tried.control_effort], [point.error, point.control_effort]);
   assert.ok(tried.control_effort < best.control_effort && tried.error.mean > best.error.mean);
   await page.keyboard.press('ArrowLeft');
@@ -325,32 +325,32 @@ test('error is traded for effort along the second curve', async () => {
   assert.deepEqual(await flight_of('native'), best);
 });
 
-test('aiming off puts the cloth on the target, where the control allows it', async () => {
+test('refinement puts the cloth on the target, where the control allows it', async () => {
   const before_it = await scene_of();
-  assert.ok(await page.isDisabled('#aim'));
-  assert.match(await page.textContent('#aim-note'), /follows a motion/);
-  await page.click('#aim-set');
+  assert.ok(await page.isDisabled('#refine'));
+  assert.match(await page.textContent('#refine-note'), /follows a motion/);
+  await page.click('#refine-set');
   await settled();
-  assert.ok(await page.isChecked('#aim'));
-  const aimed = await flight_of('native');
-  const out = path.join(folder, 'aimed.json');
+  assert.ok(await page.isChecked('#refine'));
+  const corrected = await flight_of('native');
+  const out = path.join(folder, 'corrected.json');
   const saved = await download(() => page.click('#save'));
   execFileSync(program, ['optimize', '--refine', saved, '--out', out], { stdio: 'ignore' });
   const expected = JSON.parse(readFileSync(out, 'utf8'));
-  assert.deepEqual([aimed.alpha, aimed.error], [expected.alpha, expected.error]);
-  assert.match(await page.textContent('#aim-note'), /aims up to .* off; straight at it, .* %/);
+  assert.deepEqual([corrected.alpha, corrected.error], [expected.alpha, expected.error]);
+  assert.match(await page.textContent('#refine-note'), /corrected by up to .*; straight at it, .* %/);
   await page.click('#export summary');
   const result = JSON.parse(readFileSync(await download(() => page.click('#save-result')), 'utf8'));
   assert.deepEqual(result.final, expected.final);
-  await page.uncheck('#aim');
+  await page.uncheck('#refine');
   await settled();
   const straight = await flight_of('native');
-  assert.notEqual(straight.alpha, aimed.alpha);
-  assert.ok(aimed.error.mean < straight.error.mean, `${aimed.error.mean}, ${straight.error.mean}`);
+  assert.notEqual(straight.alpha, corrected.alpha);
+  assert.ok(corrected.error.mean < straight.error.mean, `${corrected.error.mean}, ${straight.error.mean}`);
   await page.click('#engine-over');
   await settled();
-  assert.ok(await page.isDisabled('#aim'));
-  assert.match(await page.textContent('#aim-note'), /native engine/);
+  assert.ok(await page.isDisabled('#refine'));
+  assert.match(await page.textContent('#refine-note'), /native engine/);
   await page.click('#engine-native');
   await page.keyboard.press('Control+z');
   await settled();

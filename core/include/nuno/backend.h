@@ -40,31 +40,32 @@ class Simulation {
 
 /// How a flight arrives under some gains, and the derivatives with respect to each of them.
 struct ErrorSample {
-  struct Slope {
+  struct Derivative {
     /// dE/dα [m²/N]; damped and at α = 0, where it is infinite, of the springs; 0 where the rollout
     /// diverged.
     double error = 0;
-    Points miss;  ///< [d × N], m²/N; empty where it diverged
+    Points residual;  ///< [d × N], m²/N; empty where it diverged
   };
 
   double error = 0;  ///< E [m]; +∞ where the rollout diverged
-  Points miss;       ///< final positions less the target [d × N], m; empty where it diverged
-  std::vector<Slope> slopes;  ///< by the gain of every group
+  Points residual;   ///< final positions less the target [d × N], m; empty where it diverged
+  std::vector<Derivative> derivatives;  ///< by the gain of every group
 };
 
-/// Ways to change a problem's aim offset: each adds a shape to the offset of one of aim_powers.
-struct AimDirections {
-  std::vector<Index> powers;  ///< which of aim_powers, for each direction
+/// Ways to change a problem's reference correction: each adds a shape to that of one of
+/// correction_powers.
+struct CorrectionDirections {
+  std::vector<Index> powers;  ///< which of correction_powers, for each direction
   Eigen::MatrixXd shapes;     ///< [d·N × directions], a particle after another, m
 };
 
 /// A flight, and its derivatives along some directions.
-struct FlightTangent {
+struct RolloutJacobian {
   Eigen::MatrixXd arrival;  ///< of the particles' positions at arrival [d·N × directions]
   /// Control forces at some times on the way, weighted so that their squares sum to the square of
   /// the control effort (see Rollout) as nearly as the times tell.
   Vector forces;
-  Eigen::MatrixXd forces_tangent;  ///< of these [size of forces × directions]
+  Eigen::MatrixXd forces_jacobian;  ///< of these [size of forces × directions]
 };
 
 /// Steps of a flight that an engine takes at most.
@@ -96,9 +97,9 @@ class Backend {
     return do_start(cloth().initial, velocities);
   }
 
-  /// The smallest disturbance of the initial positions, over L, whose growth the engine's
+  /// The smallest perturbation of the initial positions, over L, whose growth the engine's
   /// arithmetic lets one measure.
-  double smallest_disturbance() const { return do_smallest_disturbance(); }
+  double smallest_perturbation() const { return do_smallest_perturbation(); }
 
   /// E under many gains, as many groups in each, as `rollout` gives it, from these positions
   /// [d × N]; the initial ones, if they are left out.
@@ -110,7 +111,7 @@ class Backend {
   }
 
   /// Whether the two below are there: an engine that knows its derivatives.
-  bool has_slopes() const { return do_has_slopes(); }
+  bool has_derivatives() const { return do_has_derivatives(); }
 
   /// E and its derivatives under many gains, as many groups in each, from the initial positions.
   std::vector<ErrorSample> error_samples(std::span<const Gains> gains) const {
@@ -118,8 +119,8 @@ class Backend {
   }
 
   /// The flight at one gain, and its derivatives along these directions.
-  FlightTangent flight_tangent(double gain, const AimDirections& directions) const {
-    return do_flight_tangent(gain, directions);
+  RolloutJacobian jacobian(double gain, const CorrectionDirections& directions) const {
+    return do_jacobian(gain, directions);
   }
 
   /// `errors` and `error_samples` at many values of one gain for all modes.
@@ -139,12 +140,12 @@ class Backend {
   /// By default of √(α/m)·h = 0.2 rad, where the control's own oscillation takes 30 steps.
   virtual double do_largest_gain() const;
   /// By default for double precision: a millionth of it is the rounding of a flight (1e-14).
-  virtual double do_smallest_disturbance() const { return 1e-8; }
+  virtual double do_smallest_perturbation() const { return 1e-8; }
   /// By default a rollout each, over all cores.
   virtual std::vector<double> do_errors(std::span<const Gains> gains, const Points& initial) const;
-  virtual bool do_has_slopes() const { return false; }
+  virtual bool do_has_derivatives() const { return false; }
   virtual std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const;
-  virtual FlightTangent do_flight_tangent(double gain, const AimDirections& directions) const;
+  virtual RolloutJacobian do_jacobian(double gain, const CorrectionDirections& directions) const;
 
   std::string_view name_;
   Problem problem_;

@@ -6,7 +6,7 @@
 
 namespace nuno {
 
-/// A disturbance of the start that grows more than this has a fragile answer.
+/// A perturbation of the start that grows more than this has a fragile answer.
 inline constexpr double largest_calm_sensitivity = 10;
 
 /// A cloth that stretches more than this is not the inextensible one that rods stand for.

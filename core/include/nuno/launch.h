@@ -33,8 +33,8 @@ Points without_stretching(const Problem& problem, const Points& velocities);
 
 /// The launch that the backend's problem asks for, arriving on the backend's own recurrence: each
 /// particle on its own ballistic path, or, where the reference moves, the shape along the reference
-/// and the centroid on its ballistic path; an aim offset changes either as it begins to move the
-/// reference, and `inextensible` removes what stretches.
+/// and the centroid on its ballistic path; a reference correction changes either as it begins to
+/// move the reference, and `inextensible` removes what stretches.
 Points launch(const Backend& backend);
 
 }  // namespace nuno

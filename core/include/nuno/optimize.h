@@ -15,7 +15,8 @@ namespace nuno {
 struct Objective {
   /// E at each gain [m]; +∞ where a rollout diverged.
   std::function<std::vector<double>(std::span<const double> gains)> errors;
-  /// E, the arrivals and their derivatives, one slope each; empty for an engine that knows none.
+  /// E, the arrivals and their derivatives, one derivative each; empty for an engine that knows
+  /// none.
   std::function<std::vector<ErrorSample>(std::span<const double> gains)> samples;
   /// m/t₀² [N/m]: the gain whose oscillation turns by one radian until arrival.
   double gain_scale = 1;
@@ -71,9 +72,9 @@ struct GlobalSearchOptions {
   Index brackets = 8;  ///< refined in a round (by values: valleys in all), ≥ 1
   Index rounds = 12;   ///< of refinement at most, ≥ 1; by values, a rollout each
   double gain_tolerance = 1e-6;   ///< of √α, relative; a bracket so narrow is done
-  double error_tolerance = 1e-6;  ///< relative; done when no bracket promises so much less
-  /// The best gain of a scene that differs little [N/m]: with slopes, its valley is searched, and
-  /// the whole range only if it has moved far.
+  double error_tolerance = 1e-6;  ///< relative; done when no bracket predicts so much less
+  /// The best gain of a scene that differs little [N/m]: with derivatives, its valley is searched,
+  /// and the whole range only if it has moved far.
   std::optional<double> warm_start = {};
 };
 

@@ -18,9 +18,9 @@ struct Problem {
   Arrival arrival = Arrival::pass;
   double damping_ratio = 0;         ///< ζ of the control force
   std::optional<double> time_step;  ///< that the scene asks for [s]; absent: the engine chooses
-  /// How far beside its way the reference motion aims, a shape [d × N], m, for each of aim_powers
-  /// (reference_motion.h); empty: not at all.
-  std::vector<Points> aim_offset;
+  /// What is added to the reference motion, a shape [d × N], m, for each of
+  /// correction_powers (reference_motion.h); empty: not at all.
+  std::vector<Points> reference_correction;
 
   /// The cloth, whatever its form.
   const Cloth& cloth() const {

@@ -9,18 +9,19 @@
 
 namespace nuno {
 
-/// When on the way an aim offset counts: offset k is added in proportion to (t/t₀)^aim_powers[k],
-/// from one that turns the whole flight, and its launch, to one that comes in the last hundredth.
-inline constexpr std::array<int, 4> aim_powers = {1, 6, 36, 216};
-using AimShares = std::array<double, aim_powers.size()>;
+/// When on the way a reference correction counts: correction k is added in proportion to
+/// (t/t₀)^correction_powers[k], from one that turns the whole flight, and its launch, to one that
+/// comes in the last hundredth.
+inline constexpr std::array<int, 4> correction_powers = {1, 6, 36, 216};
+using CorrectionShares = std::array<double, correction_powers.size()>;
 
 /// The shape that control pulls towards, step by step, about its own mass centre.
 ///
 /// `hold` is the paper's: the target from the first step on. `morph` moves from the initial shape
 /// to the target, see chain_morph.h and sheet_morph.h, by s from 0 at launch to 1 at arrival:
 /// `pass` takes s = t/t₀ and arrives in full swing, `settle` takes s = (t/t₀)·(2 − t/t₀) and
-/// arrives with the shape at rest. Aim offsets δₖ of the problem are added to either reference as
-/// Σ wₖ·δₖ, w = (t/t₀)^aim_powers (see refine.h).
+/// arrives with the shape at rest. Reference corrections δₖ of the problem are added to either
+/// reference as Σ wₖ·δₖ, w = (t/t₀)^correction_powers (see refine.h).
 ///
 /// A copyable value that is advanced step by step.
 class ReferenceMotion {
@@ -34,28 +35,28 @@ class ReferenceMotion {
 
   bool moves() const { return moves_; }
 
-  const AimShares& aim_shares() const { return aim_shares_; }  ///< w
+  const CorrectionShares& correction_shares() const { return correction_shares_; }  ///< w
 
   /// Mean dw/dt over the last step; its own value at t = 0 [1/s].
-  const AimShares& aim_rates() const { return aim_rates_; }
+  const CorrectionShares& correction_rates() const { return correction_rates_; }
 
   /// Goes on by one time step.
   void advance();
 
  private:
   void place_shape();
-  void add_aim(const AimShares& shares, Points& to) const;
+  void add_correction(const CorrectionShares& shares, Points& to) const;
 
   bool moves_;
   double time_step_;
   double step_time_;  ///< of t₀
   double time_ = 0;   ///< t/t₀
-  AimShares aim_shares_ = {};
-  AimShares aim_rates_ = {};
+  CorrectionShares correction_shares_ = {};
+  CorrectionShares correction_rates_ = {};
   Points shape_;
   Points velocity_;
   Vector relative_mass_;
-  /// The way without aim offsets: a shape that is held, or a motion.
+  /// The way without corrections: a shape that is held, or a motion.
   std::variant<Points, ChainMorph, SheetMorph> way_;
   std::vector<Points> offsets_;  ///< δ about their mass centres, or empty
 };

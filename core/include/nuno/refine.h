@@ -21,45 +21,44 @@ struct RefineOptions {
   Index rounds = 60;  ///< flights at most, ≥ 1
 };
 
-/// How near aiming off brought the cloth.
+/// How near trajectory refinement brought the cloth.
 struct RefineSummary {
-  bool converged = false;          ///< within the tolerance
-  std::vector<Points> aim_offset;  ///< δ, to be set as Problem::aim_offset
-  Rollout flight;                  ///< with it
-  double error_before = 0;         ///< mean distance without it, or with the problem's own [m]
-  Index rollouts = 0;              ///< flown
-  Index tangents = 0;              ///< taken
-  double seconds = 0;              ///< wall clock
-  std::string reason;              ///< why it stopped, for people
+  bool converged = false;                    ///< within the tolerance
+  std::vector<Points> reference_correction;  ///< δ, to be set as Problem::reference_correction
+  Rollout flight;                            ///< with it
+  double error_before = 0;  ///< mean distance without it, or with the problem's own [m]
+  Index rollouts = 0;       ///< flown
+  Index jacobians = 0;      ///< taken
+  double seconds = 0;       ///< wall clock
+  std::string reason;       ///< why it stopped, for people
 };
 
 /// The gain at which to refine [N/m]: enough for the cloth to follow its reference, on any engine,
 /// and no more, since what the cloth follows by itself takes no force at any gain.
-double following_gain(const Backend& backend);
+double tracking_gain(const Backend& backend);
 
-/// Aims off, as an archer does in the wind: moves the reference motion, and the launch along it, so
-/// that the cloth arrives on the target, and on a way that it goes nearly by itself: of all aim
-/// offsets δ (see ReferenceMotion) that arrive, those of least control effort. Material and control
-/// law stay as they are.
+/// Trajectory refinement: moves the reference motion, and the launch along it, so
+/// that the cloth arrives on the target, and on a way that it goes nearly by itself: of all
+/// reference corrections δ (see ReferenceMotion) that arrive, those of least control effort.
+/// Material and control law stay as they are.
 ///
 /// Gauss–Newton on effort² + weight²·error² while the weight grows, from a flight in which effort
 /// counts to one that arrives; where it stops on the way, at the tolerance or at the effort limit,
-/// stands a best trade of one for the other. Less than 1e-3·L from a target within reach, once the
-/// tangent no longer tells what effort could be spared, the rest of the error alone is removed,
+/// stands a Pareto optimum of both. Less than 1e-3·L from a target within reach, once the
+/// jacobian no longer tells what effort could be spared, the rest of the error alone is removed,
 /// with the least change to forces and offset. A target whose segments are not as long as the
 /// cloth's is out of reach: it ends where coming nearer would cost more than it is worth. `make`
-/// flies; `model`, which may be another engine, gives the tangents (exact for the native chain),
+/// flies; `model`, which may be another engine, gives the jacobians (exact for the native chain),
 /// each used as long as it foretells what happens: an answer of the chain is corrected on an engine
-/// that knows no derivative. Starts from the problem's aim offset.
+/// that knows no derivative. Starts from the problem's reference correction.
 RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options = {});
 
 /// Flies what `refine` found with `model` alone on another engine, `make`, and takes away what is
-/// left of its miss there with a few flights more. Within 1e-5·L, or the tolerance if that is more,
-/// it has arrived: an engine may compute in single precision. Under an effort limit it is flown and
-/// no more.
-RefineSummary carry_over(const Problem& problem, const RefineSummary& answer,
-                         const MakeBackend& make, const MakeBackend& model,
-                         const RefineOptions& options = {});
+/// left of its residual there with a few flights more. Within 1e-5·L, or the tolerance if that is
+/// more, it has arrived: an engine may compute in single precision. Under an effort limit it is
+/// flown and no more.
+RefineSummary transfer(const Problem& problem, const RefineSummary& answer, const MakeBackend& make,
+                       const MakeBackend& model, const RefineOptions& options = {});
 
 }  // namespace nuno

@@ -41,10 +41,10 @@ Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions
 /// average, and the mass centre stays. A chain turns its segments, which keep their lengths; a
 /// sheet moves along its normals, so that a flat one keeps those of its edges to first order.
 /// Different `seed`s give different patterns.
-Points disturbed(const Problem& problem, double size, unsigned seed = 0);
+Points perturbed(const Problem& problem, double size, unsigned seed = 0);
 
-/// How much a small disturbance at the start has grown by arrival: mean displacement at the end
-/// over mean displacement at the start, of `flight` against a twin from disturbed positions. A
+/// How much a small perturbation at the start has grown by arrival: mean displacement at the end
+/// over mean displacement at the start, of `flight` against a twin from perturbed positions. A
 /// flight above 10 is fragile: engines, steps and machines need not agree on it. Saturates where
 /// the twins have nothing in common any more.
 double sensitivity(const Backend& backend, const Rollout& flight);

@@ -32,8 +32,8 @@ double frames_per_second_of(double points, const ChainScene& scene);
 /// Throws InputError if a result of this scene would hold more frames than memory does.
 void require_few_frames(const SceneFile& file);
 
-/// Throws InputError for a scene that is too large for aim_off.
-void require_few_particles_to_aim(const SceneFile& file);
+/// Throws InputError for a scene that is too large for refine_on.
+void require_few_particles_to_refine(const SceneFile& file);
 
 /// Throws InputError if the scene's particles have too few modes for so many groups of them.
 void require_groups(const SceneFile& file, Index groups);
@@ -48,16 +48,16 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
                                                double gain);
 
-/// Makes the engine called `name` for the scene's problem aimed elsewhere, see refine.h; `name` and
-/// `file` must outlive it.
+/// Makes the engine called `name` for the scene's problem corrected elsewhere, see refine.h; `name`
+/// and `file` must outlive it.
 MakeBackend backend_maker(std::string_view name, const SceneFile& file);
 
-/// Aims off on the native chain at its following gain, and carries the answer over to the engine
-/// called `name`. `before_rollout` is called before each rollout and tangent; what it throws ends
+/// Refines on the native chain at its tracking gain, and transfers the answer to the engine
+/// called `name`. `before_rollout` is called before each rollout and jacobian; what it throws ends
 /// the work.
-RefineSummary aim_off(std::string_view name, const SceneFile& file,
-                      const RefineOptions& options = {},
-                      const std::function<void()>& before_rollout = {});
+RefineSummary refine_on(std::string_view name, const SceneFile& file,
+                        const RefineOptions& options = {},
+                        const std::function<void()>& before_rollout = {});
 
 inline constexpr std::array<std::string_view, 2> optimizer_names = {"global", "steepest-descent"};
 

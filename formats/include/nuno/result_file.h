@@ -3,9 +3,9 @@
 #include <nuno/backend.h>
 #include <nuno/joint_search.h>
 #include <nuno/optimize.h>
+#include <nuno/pareto_front.h>
 #include <nuno/refine.h>
 #include <nuno/rollout.h>
-#include <nuno/trade_off.h>
 
 #include <cstdio>
 #include <optional>
@@ -20,10 +20,10 @@ namespace nuno {
 struct Optimization {
   std::string optimizer;
   OptimizeSummary summary;
-  std::optional<double> robust_error = {};  ///< of a robust search: mean over disturbed starts [m]
-  std::vector<TradeOffPoint> trade_off = {};     ///< where a limit was asked for
+  std::optional<double> robust_error = {};  ///< of a robust search: mean over perturbed starts [m]
+  std::vector<ParetoPoint> pareto_front = {};    ///< where a limit was asked for
   std::optional<JointSearchSummary> joint = {};  ///< where there are several coefficients
-  std::optional<RefineSummary> refinement = {};  ///< where the flight aims off
+  std::optional<RefineSummary> refinement = {};  ///< where the flight is refined
 };
 
 /// The result JSON of one rollout, which has not diverged.

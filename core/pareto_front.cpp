@@ -1,4 +1,4 @@
-#include <nuno/trade_off.h>
+#include <nuno/pareto_front.h>
 
 #include <nuno/parallel.h>
 
@@ -9,8 +9,8 @@
 namespace nuno {
 namespace {
 
-TradeOffPoint point_at(const Backend& backend, double gain,
-                       const std::function<void()>& before_rollout) {
+ParetoPoint point_at(const Backend& backend, double gain,
+                     const std::function<void()>& before_rollout) {
   if (before_rollout) before_rollout();
   const Rollout flight = rollout(backend, gain);
   return {gain, flight.error.mean, flight.control_effort};
@@ -19,14 +19,14 @@ TradeOffPoint point_at(const Backend& backend, double gain,
 /// Halves the gains between two points, one on either side of a limit, until they meet; gives the
 /// last point that keeps the limit.
 template <typename KeepsLimit>
-TradeOffPoint bisect(const Backend& backend, TradeOffPoint inside, TradeOffPoint outside,
-                     KeepsLimit keeps_limit, const std::function<void()>& before_rollout) {
+ParetoPoint bisect(const Backend& backend, ParetoPoint inside, ParetoPoint outside,
+                   KeepsLimit keeps_limit, const std::function<void()>& before_rollout) {
   constexpr int halvings = 30;
   for (int i = 0; i < halvings; ++i) {
     // In logarithms, but for a side that is launch only.
     const double gain = inside.gain > 0 && outside.gain > 0 ? std::sqrt(inside.gain * outside.gain)
                                                             : 0.5 * (inside.gain + outside.gain);
-    const TradeOffPoint middle = point_at(backend, gain, before_rollout);
+    const ParetoPoint middle = point_at(backend, gain, before_rollout);
     (keeps_limit(middle) ? inside : outside) = middle;
   }
   return inside;
@@ -34,50 +34,49 @@ TradeOffPoint bisect(const Backend& backend, TradeOffPoint inside, TradeOffPoint
 
 }  // namespace
 
-std::vector<TradeOffPoint> best_trades(std::vector<TradeOffPoint> points) {
-  std::erase_if(points, [](const TradeOffPoint& point) { return !std::isfinite(point.error); });
-  std::ranges::sort(
-      points, {}, [](const TradeOffPoint& point) { return std::pair(point.effort, point.error); });
-  std::vector<TradeOffPoint> curve;
-  for (const TradeOffPoint& point : points) {
+std::vector<ParetoPoint> pareto_optimal(std::vector<ParetoPoint> points) {
+  std::erase_if(points, [](const ParetoPoint& point) { return !std::isfinite(point.error); });
+  std::ranges::sort(points, {},
+                    [](const ParetoPoint& point) { return std::pair(point.effort, point.error); });
+  std::vector<ParetoPoint> curve;
+  for (const ParetoPoint& point : points) {
     if (curve.empty() || point.error < curve.back().error) curve.push_back(point);
   }
   return curve;
 }
 
-std::vector<TradeOffPoint> trade_off(const Backend& backend, Index count,
-                                     const std::function<void()>& before_rollout) {
+std::vector<ParetoPoint> pareto_front(const Backend& backend, Index count,
+                                      const std::function<void()>& before_rollout) {
   const Objective range = objective(backend);
   const double first = 1e-2 * range.gain_scale;
   const double last = std::max(2 * first, range.largest_gain);
-  std::vector<TradeOffPoint> all(static_cast<std::size_t>(count) + 1);
+  std::vector<ParetoPoint> all(static_cast<std::size_t>(count) + 1);
   parallel_for(count + 1, [&](Index i) {
     const double along = static_cast<double>(i - 1) / static_cast<double>(count - 1);
     const double gain = i == 0 ? 0 : first * std::pow(last / first, along);
     all[static_cast<std::size_t>(i)] = point_at(backend, gain, before_rollout);
   });
-  return best_trades(std::move(all));
+  return pareto_optimal(std::move(all));
 }
 
-std::optional<TradeOffPoint> least_effort(const Backend& backend,
-                                          const std::vector<TradeOffPoint>& curve,
-                                          double error_limit,
-                                          const std::function<void()>& before_rollout) {
-  const auto keeps_limit = [&](const TradeOffPoint& point) { return point.error <= error_limit; };
+std::optional<ParetoPoint> least_effort(const Backend& backend,
+                                        const std::vector<ParetoPoint>& curve, double error_limit,
+                                        const std::function<void()>& before_rollout) {
+  const auto keeps_limit = [&](const ParetoPoint& point) { return point.error <= error_limit; };
   const auto near = std::ranges::find_if(curve, keeps_limit);
   if (near == curve.end()) return std::nullopt;
   if (near == curve.begin()) return *near;
   return bisect(backend, *near, *std::prev(near), keeps_limit, before_rollout);
 }
 
-TradeOffPoint least_error(const Backend& backend, const std::vector<TradeOffPoint>& curve,
-                          double effort_limit, const std::function<void()>& before_rollout) {
-  const auto keeps_limit = [&](const TradeOffPoint& point) { return point.effort <= effort_limit; };
+ParetoPoint least_error(const Backend& backend, const std::vector<ParetoPoint>& curve,
+                        double effort_limit, const std::function<void()>& before_rollout) {
+  const auto keeps_limit = [&](const ParetoPoint& point) { return point.effort <= effort_limit; };
   const auto costly = std::ranges::find_if_not(curve, keeps_limit);
   if (costly == curve.begin()) return point_at(backend, 0, before_rollout);
   if (costly == curve.end()) return curve.back();
-  const TradeOffPoint cheap = *std::prev(costly);
-  const TradeOffPoint between = bisect(backend, cheap, *costly, keeps_limit, before_rollout);
+  const ParetoPoint cheap = *std::prev(costly);
+  const ParetoPoint between = bisect(backend, cheap, *costly, keeps_limit, before_rollout);
   return between.error < cheap.error ? between : cheap;
 }
 

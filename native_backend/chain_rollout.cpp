@@ -8,7 +8,7 @@
 #include <memory>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "chain_flight.cpp"
+#define HWY_TARGET_INCLUDE "chain_rollout.cpp"
 #include <hwy/foreach_target.h>  // compiles the rest of this file once for every target
 // clang-format off: it needs the target to be chosen
 #include "chain_step-inl.h"
@@ -30,7 +30,8 @@ void step_scalar(const ChainPlan& plan, bool first, const double* forces, double
                  });
 }
 
-// Numbers of a gain in every lane; `seeds` is 1 where the slope is with respect to it, 0 elsewhere.
+// Numbers of a gain in every lane; `seeds` is 1 where the derivative is with respect to it, 0
+// elsewhere.
 HWY_INLINE Real gain_number(const double* gains, const double*, Real) { return *gains; }
 HWY_INLINE Pack gain_number(const double* gains, const double*, Pack) {
   return load_lanes(gains, Pack());
@@ -40,7 +41,7 @@ HWY_INLINE Dual<T> gain_number(const double* gains, const double* seeds, Dual<T>
   return {load_lanes(gains, T()), load_lanes(seeds, T())};
 }
 
-/// Lanes of coordinate `at`: value to `finals`, slope to `tangents`, `stride` apart.
+/// Lanes of coordinate `at`: value to `finals`, derivative to `derivatives`, `stride` apart.
 template <typename T>
 HWY_INLINE void write_lanes(T number, double* finals, double*, Index at, Index stride,
                             Index count) {
@@ -49,13 +50,13 @@ HWY_INLINE void write_lanes(T number, double* finals, double*, Index at, Index s
   for (Index lane = 0; lane < count; ++lane) finals[at + lane * stride] = values[lane];
 }
 template <typename T>
-HWY_INLINE void write_lanes(Dual<T> number, double* finals, double* tangents, Index at,
+HWY_INLINE void write_lanes(Dual<T> number, double* finals, double* derivatives, Index at,
                             Index stride, Index count) {
   write_lanes(number.value, finals, nullptr, at, stride, count);
-  write_lanes(number.slope, tangents, nullptr, at, stride, count);
+  write_lanes(number.derivative, derivatives, nullptr, at, stride, count);
 }
 
-/// β = 2ζ·√(α·m), shape_damping of the core; its slope is β/2α.
+/// β = 2ζ·√(α·m), shape_damping of the core; its derivative is β/2α.
 HWY_INLINE Real damping_number(const double* gains, const double*, double ratio, double mass,
                                Real) {
   return shape_damping(ratio, *gains, mass);
@@ -73,9 +74,9 @@ HWY_INLINE Dual<T> damping_number(const double* gains, const double* seeds, doub
                                   double mass, Dual<T>) {
   const T damping = damping_number(gains, seeds, ratio, mass, T());
   const T gain = load_lanes(gains, T());
-  // At α = 0 the slope is infinite; there it is given as none.
-  const T slope = where_greater(gain, T(0.0), T(0.5) * damping / gain, T(0.0));
-  return {damping, load_lanes(seeds, T()) * slope};
+  // At α = 0 the derivative is infinite; there it is given as none.
+  const T derivative = where_greater(gain, T(0.0), T(0.5) * damping / gain, T(0.0));
+  return {damping, load_lanes(seeds, T()) * derivative};
 }
 
 /// What one group of modes is pulled with.
@@ -84,7 +85,7 @@ struct GroupNumbers {
   T gain, damping;
 };
 template <typename T>
-HWY_INLINE GroupNumbers<T> group_numbers(const ChainPlan& plan, const FlightGains& gains,
+HWY_INLINE GroupNumbers<T> group_numbers(const ChainPlan& plan, const RolloutGains& gains,
                                          Index group) {
   double values[HWY_MAX_BYTES / sizeof(double)] = {};
   double seeds[HWY_MAX_BYTES / sizeof(double)] = {};
@@ -105,7 +106,7 @@ struct LowModePull {
   GroupNumbers<T> excess[most_low_modes];
   Vec2<T> amplitude[most_low_modes];  ///< of the force on each mode
 
-  HWY_INLINE void prepare(const ChainPlan& plan, const FlightGains& gains) {
+  HWY_INLINE void prepare(const ChainPlan& plan, const RolloutGains& gains) {
     const GroupNumbers<T> rest = group_numbers<T>(plan, gains, gains.groups() - 1);
     count = gains.low_modes->count();
     shapes = gains.low_modes->shapes.data();
@@ -150,8 +151,8 @@ enum class Control { springs, damped, grouped };
 
 template <Control control, typename T>
 void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* initial,
-               const double* launch_velocity, const FlightGains& gains, double* finals,
-               double* tangents) {
+               const double* launch_velocity, const RolloutGains& gains, double* finals,
+               double* derivatives) {
   constexpr bool damped_control = control != Control::springs;
   const Index n = plan.particles;
   const auto size = static_cast<std::size_t>(n);
@@ -204,31 +205,32 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
   }
   const Index count = gains.flights();
   for (Index i = 0; i < n; ++i) {
-    write_lanes(x[i].x, finals, tangents, 2 * i, 2 * n, count);
-    write_lanes(x[i].y, finals, tangents, 2 * i + 1, 2 * n, count);
+    write_lanes(x[i].x, finals, derivatives, 2 * i, 2 * n, count);
+    write_lanes(x[i].y, finals, derivatives, 2 * i + 1, 2 * n, count);
   }
 }
 
 /// Gains by group take the damped path, whose dashpots may be nothing.
 template <typename T>
-auto flight_of(const ChainPlan& plan, const FlightGains& gains) {
+auto flight_of(const ChainPlan& plan, const RolloutGains& gains) {
   if (gains.low_modes != nullptr) return fly_lanes<Control::grouped, T>;
   return plan.damping_ratio > 0 ? fly_lanes<Control::damped, T> : fly_lanes<Control::springs, T>;
 }
 
 void fly_all(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-             const double* launch_velocity, const FlightGains& gains, double* finals,
-             double* tangents) {
+             const double* launch_velocity, const RolloutGains& gains, double* finals,
+             double* derivatives) {
   const Index wide = lanes_of(Pack());
   const Index count = gains.flights();
   for (Index first = 0; first < count; first += wide) {
-    const FlightGains here = gains.part(first, std::min(wide, count - first));
+    const RolloutGains here = gains.part(first, std::min(wide, count - first));
     double* out = finals + first * 2 * plan.particles;
-    double* out_tangents = tangents == nullptr ? nullptr : tangents + first * 2 * plan.particles;
-    const auto flight = tangents != nullptr   ? flight_of<Dual<Pack>>(plan, here)
-                        : here.flights() == 1 ? flight_of<Real>(plan, here)
-                                              : flight_of<Pack>(plan, here);
-    flight(plan, reference, initial, launch_velocity, here, out, out_tangents);
+    double* out_derivatives =
+        derivatives == nullptr ? nullptr : derivatives + first * 2 * plan.particles;
+    const auto flight = derivatives != nullptr ? flight_of<Dual<Pack>>(plan, here)
+                        : here.flights() == 1  ? flight_of<Real>(plan, here)
+                                               : flight_of<Pack>(plan, here);
+    flight(plan, reference, initial, launch_velocity, here, out, out_derivatives);
   }
 }
 
@@ -247,9 +249,9 @@ HWY_EXPORT(fly_all);
 HWY_EXPORT(lanes);
 HWY_EXPORT(instruction_set);
 
-FlightGains FlightGains::part(Index first, Index count) const {
+RolloutGains RolloutGains::part(Index first, Index count) const {
   const auto at = [](Index index) { return static_cast<std::size_t>(index); };
-  FlightGains result = *this;
+  RolloutGains result = *this;
   result.values = values.subspan(at(first * groups()), at(count * groups()));
   if (!seeds.empty()) result.seeds = seeds.subspan(at(first), at(count));
   return result;
@@ -261,10 +263,10 @@ void step(const ChainPlan& plan, bool first, const double* forces, double* posit
 }
 
 void fly(const ChainPlan& plan, const ReferenceMotion& reference, const double* initial,
-         const double* launch_velocity, const FlightGains& gains, double* finals,
-         double* tangents) {
+         const double* launch_velocity, const RolloutGains& gains, double* finals,
+         double* derivatives) {
   HWY_DYNAMIC_DISPATCH(fly_all)
-  (plan, reference, initial, launch_velocity, gains, finals, tangents);
+  (plan, reference, initial, launch_velocity, gains, finals, derivatives);
 }
 
 Index lanes() { return HWY_DYNAMIC_DISPATCH(lanes)(); }

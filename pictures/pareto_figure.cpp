@@ -1,4 +1,4 @@
-#include "pictures/trade_off_figure.h"
+#include "pictures/pareto_figure.h"
 
 #include <fmt/format.h>
 
@@ -12,55 +12,55 @@
 namespace nuno::figures {
 namespace {
 
-/// The best trades that the figure has room for: not those that hardly differ from launch only.
-std::vector<TradeOffPoint> shown_trades(const TradeOffCurve& curve) {
-  std::vector<TradeOffPoint> trades = best_trades(curve.flights);
+/// The best pareto that the figure has room for: not those that hardly differ from launch only.
+std::vector<ParetoPoint> shown_pareto(const ParetoCurve& curve) {
+  std::vector<ParetoPoint> pareto = pareto_optimal(curve.flights);
   const double launch_only = curve.flights.front().error;
-  std::erase_if(trades, [&](const TradeOffPoint& point) {
+  std::erase_if(pareto, [&](const ParetoPoint& point) {
     return point.gain <= 0 || point.error > 0.97 * launch_only;
   });
-  return trades;
+  return pareto;
 }
 
 /// Whether no other flight's gain lies between two of them, the lower first.
-bool are_neighbours(const std::vector<TradeOffPoint>& flights, double gain, double next) {
-  const auto after = std::ranges::upper_bound(flights, gain, {}, &TradeOffPoint::gain);
+bool are_neighbours(const std::vector<ParetoPoint>& flights, double gain, double next) {
+  const auto after = std::ranges::upper_bound(flights, gain, {}, &ParetoPoint::gain);
   return after != flights.end() && after->gain == next;
 }
 
 }  // namespace
 
-std::vector<TradeOffPoint> spread_along(const TradeOffCurve& curve, std::size_t count) {
-  std::vector<TradeOffPoint> trades = shown_trades(curve);
-  if (trades.size() <= count) return trades;
-  const double wide = std::log(trades.back().effort / trades.front().effort);
-  const double high = std::log(trades.front().error / trades.back().error);
+std::vector<ParetoPoint> spread_along(const ParetoCurve& curve, std::size_t count) {
+  std::vector<ParetoPoint> pareto = shown_pareto(curve);
+  if (pareto.size() <= count) return pareto;
+  const double wide = std::log(pareto.back().effort / pareto.front().effort);
+  const double high = std::log(pareto.front().error / pareto.back().error);
   std::vector<double> along = {0};
-  for (std::size_t i = 1; i < trades.size(); ++i) {
+  for (std::size_t i = 1; i < pareto.size(); ++i) {
     along.push_back(along.back() +
-                    std::hypot(std::log(trades[i].effort / trades[i - 1].effort) / wide,
-                               std::log(trades[i - 1].error / trades[i].error) / high));
+                    std::hypot(std::log(pareto[i].effort / pareto[i - 1].effort) / wide,
+                               std::log(pareto[i - 1].error / pareto[i].error) / high));
   }
-  std::vector<TradeOffPoint> result;
+  std::vector<ParetoPoint> result;
   for (std::size_t i = 0, k = 0; k < count; ++k) {
     const double wanted = along.back() * static_cast<double>(k) / static_cast<double>(count - 1);
     while (i + 1 < along.size() && along[i] < wanted * (1 - 1e-12)) ++i;
-    if (result.empty() || result.back().gain != trades[i].gain) result.push_back(trades[i]);
+    if (result.empty() || result.back().gain != pareto[i].gain) result.push_back(pareto[i]);
   }
   return result;
 }
 
-Drawing draw_trade_off(const std::vector<TradeOffCurve>& curves, double cloth_length,
-                       const TradeOffFigure& options) {
+Drawing draw_pareto_front(const std::vector<ParetoCurve>& curves, double cloth_length,
+                          const ParetoFigure& options) {
   const double percent = 100 / cloth_length;
   const bool small = options.width < 600;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double low = infinity, high = 0, least = infinity, launch_only = 0;
   std::vector<std::string> backends;
-  for (const TradeOffCurve& curve : curves) {
+  for (const ParetoCurve& curve : curves) {
     backends.push_back(curve.backend);
     launch_only = std::max(launch_only, curve.flights.front().error);
-    for (const TradeOffPoint& point : shown_trades(curve)) {
+    for (const ParetoPoint& point : shown_pareto(curve)) {
       low = std::min(low, point.effort);
       high = std::max(high, point.effort);
       least = std::min(least, point.error);
@@ -83,10 +83,10 @@ Drawing draw_trade_off(const std::vector<TradeOffCurve>& curves, double cloth_le
       {fmt::format("control effort [{}]", options.effort_unit), low, high, Scale::logarithmic},
       errors);
   plot.draw_axes(drawing);
-  const auto at = [&](const TradeOffPoint& point) {
+  const auto at = [&](const ParetoPoint& point) {
     return plot.at(point.effort, std::max(percent * point.error, errors.low));
   };
-  const auto ring = [&](std::size_t i, const TradeOffPoint& point) {
+  const auto ring = [&](std::size_t i, const ParetoPoint& point) {
     drawing.marker(series_marker(i), at(point), marker_size(i, small), series(i));
     drawing.marker(Marker::ring, at(point), (small ? 14.0 : 17.0) + 4 * static_cast<double>(i),
                    series(i));
@@ -99,7 +99,7 @@ Drawing draw_trade_off(const std::vector<TradeOffCurve>& curves, double cloth_le
       drawing.line(part, i == 0 ? "a thin ghost" : "b thin ghost", Weight::light);
       part.clear();
     };
-    for (const TradeOffPoint& point : curves[i].flights) {
+    for (const ParetoPoint& point : curves[i].flights) {
       if (point.gain > 0 && std::isfinite(point.error)) {
         part.push_back(at(point));
       } else {
@@ -110,11 +110,11 @@ Drawing draw_trade_off(const std::vector<TradeOffCurve>& curves, double cloth_le
   }
   for (std::size_t i = 0; i < curves.size(); ++i) {
     std::vector<Vec> line;
-    const TradeOffPoint* last = nullptr;
-    const std::vector<TradeOffPoint> trades = best_trades(curves[i].flights);
-    for (const TradeOffPoint& point : trades) {
+    const ParetoPoint* last = nullptr;
+    const std::vector<ParetoPoint> pareto = pareto_optimal(curves[i].flights);
+    for (const ParetoPoint& point : pareto) {
       if (point.gain <= 0) continue;
-      // Between gains that are no neighbours more effort buys nothing: a stair, not a slope.
+      // Between gains that are no neighbours more effort buys nothing: a stair, not a derivative.
       if (last && !are_neighbours(curves[i].flights, last->gain, point.gain)) {
         line.push_back({at(point).x, line.back().y});
       }
@@ -150,13 +150,13 @@ Drawing draw_trade_off(const std::vector<TradeOffCurve>& curves, double cloth_le
 
   const Box& frame = plot.frame();
   const Box labels = {frame.left + 2, frame.top + 2, frame.width - 4, frame.height - 4};
-  const bool same = std::ranges::all_of(curves, [&](const TradeOffCurve& curve) {
-    const TradeOffPoint& best = curves[0].best;
+  const bool same = std::ranges::all_of(curves, [&](const ParetoCurve& curve) {
+    const ParetoPoint& best = curves[0].best;
     return std::abs(curve.best.effort - best.effort) <= 0.02 * best.effort &&
            std::abs(curve.best.error - best.error) <= 0.002 * cloth_length;
   });
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    const TradeOffPoint& best = curves[i].best;
+    const ParetoPoint& best = curves[i].best;
     const std::string name = name_of_best(i, backends, same, small);
     if (name.empty()) continue;
     drawing.label(at(best),

@@ -1,4 +1,4 @@
-#include "studio/flight.h"
+#include "studio/studio_rollout.h"
 
 #include <nuno/launch.h>
 #include <nuno/reference_motion.h>

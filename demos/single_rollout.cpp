@@ -1,4 +1,4 @@
-#include "single_flight.h"
+#include "single_rollout.h"
 
 #include <nuno/conditioning.h>
 #include <nuno/output.h>
