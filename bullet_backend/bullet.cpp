@@ -24,7 +24,7 @@ class SheetBackend final : public Backend {
   }
 
   // A hundred times the rounding that a flight collects in single precision.
-  double do_smallest_disturbance() const override { return 1e-4; }
+  double do_smallest_perturbation() const override { return 1e-4; }
 
   UnitSheet sheet_;
 };

@@ -48,7 +48,8 @@ HingeForce::HingeForce(const Hinges& hinges) : ExplicitForce(BT_LINEAR_ELASTICIT
 // With e = b − a and the triangles' normals p = e × (c − a) and q = (d − a) × e,
 //     ∂θ/∂c = −|e|·p/|p|²,   ∂θ/∂d = −|e|·q/|q|²;
 // a triangle that turns about the edge leaves its ends where they are, and one that is moved along
-// leaves θ: so with s and t the places of the feet of c and d along the edge, from 0 at a to 1 at b,
+// leaves θ: so with s and t the places of the feet of c and d along the edge, from 0 at a to 1 at
+// b,
 //     ∂θ/∂a = −(1 − s)·∂θ/∂c − (1 − t)·∂θ/∂d,   ∂θ/∂b = −s·∂θ/∂c − t·∂θ/∂d.
 void HingeForce::addScaledExplicitForce(btScalar scale, TVStack& force) {
   scale *= kick();
@@ -86,7 +87,8 @@ OuterForce::OuterForce(Index particles)
 void OuterForce::addScaledExplicitForce(btScalar scale, TVStack& force) {
   for (int i = 0; i < nodes().size(); ++i) {
     const btSoftBody::Node& node = nodes()[i];
-    force[i] += scale * kick() * forces_[static_cast<std::size_t>(i)] - loss_ / node.m_im * node.m_v;
+    force[i] +=
+        scale * kick() * forces_[static_cast<std::size_t>(i)] - loss_ / node.m_im * node.m_v;
     const btVector3 velocity = node.m_v + node.m_im * force[i];
     if (!(velocity.length2() < 1)) is_wild_ = true;  // so is one that is not a number
   }

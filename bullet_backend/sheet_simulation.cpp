@@ -81,8 +81,8 @@ class SheetSimulation final : public Simulation {
     const Vector3d moved = mass_center(positions_, sheet_.mass);
     const Vector3d drift = mass_center(velocities_, sheet_.mass);
     positions_ = (sheet_.unit_length * (positions_.colwise() - moved)).colwise() + center_;
-    velocities_ = (sheet_.unit_length * (velocities_.colwise() - drift)).colwise() +
-                  center_velocity_;
+    velocities_ =
+        (sheet_.unit_length * (velocities_.colwise() - drift)).colwise() + center_velocity_;
     velocities_ /= sheet_.h;
   }
 

@@ -28,8 +28,8 @@ std::unique_ptr<btSoftBody> make_body(btSoftBodyWorldInfo& info, const UnitSheet
     x.push_back(narrow(positions.col(i)));
     masses.push_back(narrow(sheet.mass[i]));
   }
-  auto body = std::make_unique<btSoftBody>(&info, static_cast<int>(x.size()), x.data(),
-                                           masses.data());
+  auto body =
+      std::make_unique<btSoftBody>(&info, static_cast<int>(x.size()), x.data(), masses.data());
   for (int i = 0; i < body->m_nodes.size(); ++i) {
     body->m_nodes[i].m_v = body->m_nodes[i].m_vn = narrow(velocities.col(i));
   }

@@ -83,7 +83,8 @@ StepLimit elastic_limit(const Sheet& sheet) {
   const Rates damped = rates(sheet, &Springs::damping, &Hinges::damping);
   const Vector omega2 = elastic.stretch + elastic.shear + elastic.bending;
   const Vector gamma = damped.stretch + damped.shear + damped.bending;
-  const Vector h = limit / (gamma.array() + (gamma.array().square() + limit * omega2.array()).sqrt());
+  const Vector h =
+      limit / (gamma.array() + (gamma.array().square() + limit * omega2.array()).sqrt());
   Index i = 0;
   const double smallest = h.minCoeff(&i);
 

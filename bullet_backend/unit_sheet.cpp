@@ -13,9 +13,9 @@ namespace {
 void set_kicks(double z, UnitSheet& unit) {
   constexpr double small = 1e-3;  // where the series below is exact to rounding
   const double mean = z > 0 ? -std::expm1(-z) / z : 1;
-  const double half = z > small ? (1 - mean) / z
-                                : 1.0 / 2 - z / 6 + z * z / 24 - z * z * z / 120 +
-                                      z * z * z * z / 720;
+  const double half = z > small
+                          ? (1 - mean) / z
+                          : 1.0 / 2 - z / 6 + z * z / 24 - z * z * z / 120 + z * z * z * z / 720;
   unit.first = {mean, half};
   unit.other = {std::exp(-z), mean};
 }
