@@ -64,7 +64,7 @@ struct Figure {
 
 Figure figure_5(const SceneFile& file) {
   std::vector<GainCurve> curves;
-  for (const std::string_view name : backend_names) {
+  for (const std::string_view name : chain_engines) {
     const auto backend = make_backend(name, file);
     curves.push_back(gain_curve(file, *backend, name == "native" ? 1000 : 200));
   }

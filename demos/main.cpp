@@ -142,7 +142,7 @@ void add_throw_options(CLI::App& command, ThrowOptions& options) {
   add_positive(command, "--time", "T", options.arrival_time, "Arrival time [s], > 0");
   command.get_option("--time")->required();
   add_out(command, options.out, "FILE",
-          "Animated mesh (.glb) or result (.json); - is the result on standard output");
+          "Animated mesh (.glb) or result (.json; - is standard output)");
   command
       .add_option_function<std::string>(
           "--material",
