@@ -1,7 +1,8 @@
 // The sheet's equations of motion, written once for every number (number-inl.h).
 //
 // Springs. Between particles i and j, l = |d|, d = xⱼ − xᵢ: the force k·(l − ℓ) + c·l̇ along d. The
-// rate l̇ is that of the last substep, (l − l_before)/h.
+// rate l̇ is that of the last substep, (l − l_before)/h, so that on i the force is
+//     ((k + c/h) − (k·ℓ + c/h·l_before)/l)·d.
 //
 // Hinges. At the edge e = b − a between the triangles (a, b, c) and (b, a, d), with the normals
 //     n₁ = e × (c − a),   n₂ = (d − a) × e,
@@ -26,6 +27,14 @@
 // What is stored is u = m·v/q, so that forces add to it as they are. A pass over the particles does
 // a substep: a particle's springs to those after it give the last of its force, so it is moved at
 // once, and u goes on to r·u − m·g, ready for the next kick.
+//
+// Velocities. What control is told is the mean velocity over the last step, as the trapezoid of the
+// last substeps' velocities w of this step and the one before,
+//     ½·(1 + 1/n)·wₙₒw + ½·(1 − 1/n)·w_before,
+// centred where (x − x_before)/H is and second order like it. A stretch wave of frequency ω that a
+// step does not resolve gets from control's dashpots β the power −β·(½·(1 + cos ωH) + …) ≤ 0. With
+// (x − x_before)/H it would be −β·sin(ωH)/(ωH), which pumps at π < ωH < 2π: then a sheet of 1024
+// particles without damping of its own tore at gains that half of the step took well.
 
 #if defined(NUNO_SHEET_STEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef NUNO_SHEET_STEP_INL_H_
@@ -109,6 +118,17 @@ struct SheetArrays {
   T* turn;
 };
 
+/// The mean velocity over the last step of a particle with this u; keeps that of its last substep.
+template <typename T>
+HWY_INLINE Vec3<T> mean_velocity(const SheetPlan& plan, Index i, const Vec3<T>& u, Vec3<T>& last) {
+  const double now_share = 0.5 + 0.5 / static_cast<double>(plan.substeps);
+  const auto at = static_cast<std::size_t>(i);
+  const Vec3<T> now = scale(plan.speed[at], Vec3<T>{u.x, shift(plan.weight[at], u.y), u.z});
+  const Vec3<T> mean = scale_add(now_share, now, scale(1 - now_share, last));
+  last = now;
+  return mean;
+}
+
 /// A substep: the springs kick for `share` of a full kick, and all move.
 template <bool damped, bool whole, typename T>
 HWY_INLINE void spring_substep(const SheetPlan& plan, double share, const SheetArrays<T>& sheet) {
@@ -125,13 +145,12 @@ HWY_INLINE void spring_substep(const SheetPlan& plan, double share, const SheetA
       const Vec3<T> d = sheet.x[j] - x;
       const T squared = dot(d, d);
       const T inverse = rsqrt(squared);
-      const T length = squared * inverse;
-      T tension = scale_add(spring[e], length, Constant<T>::of(-rest_tension[e]));
+      T rest = Constant<T>::of(rest_tension[e]);
       if constexpr (damped) {
-        tension = scale_add(dashpot[e], length - sheet.length[e], tension);
-        sheet.length[e] = length;
+        rest = scale_add(dashpot[e], sheet.length[e], rest);
+        sheet.length[e] = squared * inverse;
       }
-      T pull = tension * inverse;
+      T pull = neg_mul_add(rest, inverse, Constant<T>::of(spring[e]));
       if constexpr (!whole) pull = scale(share, pull);
       u = add_scaled(pull, d, u);
       sheet.u[j] = subtract_scaled(pull, d, sheet.u[j]);
