@@ -48,13 +48,12 @@ struct SheetPlan {
 
 /// A sheet in flight, in the plan's order: a copyable value.
 struct SheetState {
-  bool first = true;                    ///< before the first step
-  std::vector<double> positions;        ///< [3 × N], m
-  std::vector<double> impulse;          ///< u of sheet_step-inl.h [3 × N], N
-  std::vector<double> velocities;       ///< see sheet_step-inl.h [3 × N], m/s
-  std::vector<double> last_velocities;  ///< of the last substep [3 × N], m/s
-  std::vector<double> length;           ///< of the springs a substep ago [springs], m; or empty
-  std::vector<double> turn;  ///< θ − θ₀ of the hinges a step ago [hinges]; or empty
+  bool first = true;               ///< before the first step
+  std::vector<double> positions;   ///< [3 × N], m
+  std::vector<double> impulse;     ///< u of sheet_step-inl.h [3 × N], N
+  std::vector<double> velocities;  ///< see sheet_step-inl.h [3 × N], m/s
+  std::vector<double> length;      ///< of the springs a substep ago [springs], m; or empty
+  std::vector<double> turn;        ///< θ − θ₀ of the hinges a step ago [hinges]; or empty
 };
 
 /// At these positions with these velocities [3 × N], in the problem's order.

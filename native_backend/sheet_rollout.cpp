@@ -25,17 +25,13 @@ void step_sheet(const SheetPlan& plan, const double* forces, SheetState& state) 
   static_assert(sizeof(Vec3<Real>) == 3 * sizeof(double));
   const SheetArrays<Real> sheet{reinterpret_cast<Vec3<Real>*>(state.positions.data()),
                                 reinterpret_cast<Vec3<Real>*>(state.impulse.data()),
-                                state.length.data(), state.turn.data()};
+                                state.length.data(), state.turn.data(),
+                                reinterpret_cast<Vec3<Real>*>(state.velocities.data())};
   advance_sheet(plan, state.first, sheet, [&](Index i) NUNO_INLINE_LAMBDA {
     const double* force = forces + 3 * plan.user_index[static_cast<std::size_t>(i)];
     return Vec3<Real>{force[0], force[1], force[2]};
   });
   state.first = false;
-  auto* velocities = reinterpret_cast<Vec3<Real>*>(state.velocities.data());
-  auto* last = reinterpret_cast<Vec3<Real>*>(state.last_velocities.data());
-  for (Index i = 0; i < plan.particles; ++i) {
-    velocities[i] = mean_velocity(plan, i, sheet.u[i], last[i]);
-  }
 }
 
 /// θ − θ₀ of every hinge, a step before `state` at these rates of the particles [3 × N].
@@ -124,12 +120,11 @@ void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const She
   const std::unique_ptr<T[]> length = broadcast(start.length);
   const std::unique_ptr<T[]> turn = broadcast(start.turn);
   static_assert(sizeof(Vec3<T>) == 3 * sizeof(T));
-  const SheetArrays<T> sheet{reinterpret_cast<Vec3<T>*>(positions.get()),
-                             reinterpret_cast<Vec3<T>*>(impulse.get()), length.get(), turn.get()};
   const std::unique_ptr<T[]> velocities = broadcast(start.velocities);
-  const std::unique_ptr<T[]> last_velocities = broadcast(start.last_velocities);
-  auto* velocity = reinterpret_cast<Vec3<T>*>(velocities.get());
-  auto* last = reinterpret_cast<Vec3<T>*>(last_velocities.get());
+  auto* velocity = damped_control ? reinterpret_cast<Vec3<T>*>(velocities.get()) : nullptr;
+  const SheetArrays<T> sheet{reinterpret_cast<Vec3<T>*>(positions.get()),
+                             reinterpret_cast<Vec3<T>*>(impulse.get()), length.get(), turn.get(),
+                             velocity};
   const SheetControl<T> control(plan, gains);
   for (Index step = 0; step < plan.steps; ++step) {
     const double* shape = reference.shape().data();
@@ -151,11 +146,6 @@ void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const She
       }
       return scale(plan.relative_mass[static_cast<std::size_t>(user)], pull);
     });
-    if constexpr (damped_control) {
-      for (Index i = 0; i < n; ++i) {
-        velocity[i] = mean_velocity(plan, i, sheet.u[i], last[i]);
-      }
-    }
     reference.advance();
   }
   const auto count = static_cast<Index>(gains.size());
@@ -219,7 +209,7 @@ SheetState begin(const SheetPlan& plan, const Points& positions, const Points& v
     }
     state.impulse[3 * i + 1] -= plan.first_share * plan.weight[i];
   }
-  state.velocities = state.last_velocities = rates;
+  state.velocities = rates;
   if (!plan.dashpot.empty()) {
     const auto at = [](const std::vector<double>& values, std::size_t i) {
       return Eigen::Map<const Eigen::Vector3d>(values.data() + 3 * i);

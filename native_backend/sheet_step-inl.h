@@ -28,13 +28,14 @@
 // a substep: a particle's springs to those after it give the last of its force, so it is moved at
 // once, and u goes on to r·u − m·g, ready for the next kick.
 //
-// Velocities. What control is told is the mean velocity over the last step, as the trapezoid of the
-// last substeps' velocities w of this step and the one before,
-//     ½·(1 + 1/n)·wₙₒw + ½·(1 − 1/n)·w_before,
-// centred where (x − x_before)/H is and second order like it. A stretch wave of frequency ω that a
-// step does not resolve gets from control's dashpots β the power −β·(½·(1 + cos ωH) + …) ≤ 0. With
-// (x − x_before)/H it would be −β·sin(ωH)/(ωH), which pumps at π < ωH < 2π: then a sheet of 1024
-// particles without damping of its own tore at gains that half of the step took well.
+// Velocities. What control is told is the mean velocity over the last step, as the trapezoid
+//     ½·(1 + 1/n)·w_end + ½·(1 − 1/n)·w_kicked
+// of the velocity w of the last substep and that of the substep before the step, to which the kick
+// of all the step is added: centred and of second order like (x − x_before)/H, which it is where
+// n = 1. A stretch wave of frequency ω that a step does not resolve gets from control's dashpots β
+// the power −β·(½·(1 + cos ωH) + …) ≤ 0. With (x − x_before)/H it would be −β·sin(ωH)/(ωH), which
+// pumps at π < ωH < 2π: then a sheet of 1024 particles without damping of its own tore at gains
+// that half of the step took well.
 
 #if defined(NUNO_SHEET_STEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef NUNO_SHEET_STEP_INL_H_
@@ -116,17 +117,14 @@ struct SheetArrays {
   Vec3<T>* u;
   T* length;
   T* turn;
+  Vec3<T>* velocity;  ///< null where nobody asks
 };
 
-/// The mean velocity over the last step of a particle with this u; keeps that of its last substep.
+/// The velocity of the last substep of a particle with this u.
 template <typename T>
-HWY_INLINE Vec3<T> mean_velocity(const SheetPlan& plan, Index i, const Vec3<T>& u, Vec3<T>& last) {
-  const double now_share = 0.5 + 0.5 / static_cast<double>(plan.substeps);
+HWY_INLINE Vec3<T> velocity_of(const SheetPlan& plan, Index i, const Vec3<T>& u) {
   const auto at = static_cast<std::size_t>(i);
-  const Vec3<T> now = scale(plan.speed[at], Vec3<T>{u.x, shift(plan.weight[at], u.y), u.z});
-  const Vec3<T> mean = scale_add(now_share, now, scale(1 - now_share, last));
-  last = now;
-  return mean;
+  return scale(plan.speed[at], Vec3<T>{u.x, shift(plan.weight[at], u.y), u.z});
 }
 
 /// A substep: the springs kick for `share` of a full kick, and all move.
@@ -235,6 +233,12 @@ HWY_INLINE void advance_sheet(const SheetPlan& plan, bool first, const SheetArra
   } else {
     hinge_kick<true>(plan, kicks, sheet);
   }
+  const double end_share = 0.5 + 0.5 / static_cast<double>(plan.substeps);
+  if (sheet.velocity != nullptr) {
+    for (Index i = 0; i < plan.particles; ++i) {
+      sheet.velocity[i] = scale(1 - end_share, velocity_of(plan, i, sheet.u[i]));
+    }
+  }
   for (Index n = 0; n < plan.substeps; ++n) {
     if (plan.dashpot.empty()) {
       if (n == 0 && first) {
@@ -246,6 +250,11 @@ HWY_INLINE void advance_sheet(const SheetPlan& plan, bool first, const SheetArra
       spring_substep<true, false>(plan, share, sheet);
     } else {
       spring_substep<true, true>(plan, 1, sheet);
+    }
+  }
+  if (sheet.velocity != nullptr) {
+    for (Index i = 0; i < plan.particles; ++i) {
+      sheet.velocity[i] = scale_add(end_share, velocity_of(plan, i, sheet.u[i]), sheet.velocity[i]);
     }
   }
 }
