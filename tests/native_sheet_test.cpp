@@ -343,6 +343,7 @@ TEST(NativeSheet, IsOfSecondOrder) {
   for (const double times : {0.0, 1.0, 10.0}) {
     SheetScene scene = throw_scene(false);
     scene.damping_ratio = 0;
+    scene.reference = Reference::hold;  // which pulls from the first step on
     const Problem problem = make_problem(scene);
     std::vector<Points> finals;
     for (const double h : {1.0 / 800, 1.0 / 1600, 1.0 / 3200}) {
@@ -453,7 +454,12 @@ TEST(NativeSheet, ObeysATimeStepThatIsStableAndCutsOneThatIsNot) {
   scene.cloth.bending_stiffness = 0.1;
   const auto backend = native::make_backend(make_problem(scene));
   EXPECT_LT(backend->time_step(), 0.01);
-  EXPECT_EQ(rollout(*backend, 30 * gain_scale(backend->problem())).status, RolloutStatus::ok);
+  // Unstable hinges rattle without tearing: what they do to the arrival tells.
+  const double gain = 300 * gain_scale(backend->problem());
+  scene.time_step = 1e-4;
+  const auto fine = native::make_backend(make_problem(scene));
+  EXPECT_LT(farthest(rollout(*backend, gain).final, rollout(*fine, gain).final),
+            0.02 * backend->cloth().size);
 }
 
 TEST(NativeSheet, RefusesMoreStepsThanAFlightMayTake) {
