@@ -206,7 +206,6 @@ TEST(NativeSheet, TwistsAsAFreeSquarePlate) {
   double last_error = 0;
   for (const Index columns : {7, 13, 25}) {
     const double error = std::abs(twisting_frequency(columns) / expected - 1);
-    RecordProperty("error_" + std::to_string(columns), std::to_string(error));
     if (last_error > 0) {
       EXPECT_LT(error, 0.6 * last_error) << columns;
     }
@@ -281,7 +280,6 @@ TEST(NativeSheet, LosesNoEnergyWithoutDamping) {
       x = flight->positions();
       v = flight->velocities();
     }
-    RecordProperty("error_" + std::to_string(backend->steps()), std::to_string(error));
     if (last_error > 0) {
       EXPECT_LT(error, 0.4 * last_error) << h;
     }
@@ -316,12 +314,9 @@ TEST(NativeSheet, IsOfSecondOrder) {
       finals.push_back(problem.cloth().shape_of(flight->positions()));
     }
     const double order = std::log2((finals[0] - finals[1]).norm() / (finals[1] - finals[2]).norm());
-    RecordProperty("order", std::to_string(order));
     EXPECT_NEAR(order, 2, 0.2) << "gain × " << times;
   }
 }
-
-double farthest(const Points& a, const Points& b) { return (a - b).colwise().norm().maxCoeff(); }
 
 TEST(NativeSheet, FliesTheSameTurnedMirroredAndRenumbered) {
   for (const bool all_quads : {true, false}) {

@@ -52,6 +52,11 @@ inline double gain_scale(const Problem& problem) {
   return problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
 }
 
+/// The largest distance between two points of one number.
+inline double farthest(const Points& a, const Points& b) {
+  return (a - b).colwise().norm().maxCoeff();
+}
+
 inline SheetMaterial without_losses() {
   return {.air_drag = 0, .stretch_damping = 0, .shear_damping = 0};
 }
