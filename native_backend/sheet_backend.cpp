@@ -25,9 +25,8 @@ class SheetSimulation final : public Simulation {
 
   void step(const Points& forces) override {
     native::step(plan_, forces, state_);
-    before_.swap(positions_);
-    read_positions(plan_, state_, positions_);
-    velocities_ = (1 / plan_.H) * (positions_ - before_);
+    in_user_order(plan_, state_.positions, positions_);
+    in_user_order(plan_, state_.velocities, velocities_);
   }
   const Points& positions() const override { return positions_; }
   const Points& velocities() const override { return velocities_; }
@@ -37,7 +36,6 @@ class SheetSimulation final : public Simulation {
   SheetState state_;
   Points positions_;
   Points velocities_;
-  Points before_;
 };
 
 class SheetBackend final : public Backend {
@@ -103,8 +101,7 @@ class SheetBackend final : public Backend {
     std::vector<double> values;
     for (const Gains& each : gains) values.push_back(each.rest);
     std::vector<ErrorSample> samples(gains.size());
-    const Points velocities = launch(*this);
-    const SheetState start = begin(plan_, initial, velocities);
+    const SheetState start = begin(plan_, initial, launch(*this));
     const ReferenceMotion reference(problem(), time_step());
     const auto batch = static_cast<std::size_t>(sheet_lanes());
     parallel_for(static_cast<Index>((values.size() + batch - 1) / batch), [&](Index b) {
@@ -113,8 +110,8 @@ class SheetBackend final : public Backend {
       const Points& target = problem().target;
       std::vector<double> finals(static_cast<std::size_t>(target.size()) * count);
       std::vector<double> derivatives(with_derivatives ? finals.size() : 0);
-      fly(plan_, reference, start, velocities, std::span(values).subspan(first, count),
-          finals.data(), with_derivatives ? derivatives.data() : nullptr);
+      fly(plan_, reference, start, std::span(values).subspan(first, count), finals.data(),
+          with_derivatives ? derivatives.data() : nullptr);
       for (std::size_t lane = 0; lane < count; ++lane) {
         const std::size_t at = lane * static_cast<std::size_t>(target.size());
         samples[first + lane] =

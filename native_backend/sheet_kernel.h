@@ -23,6 +23,7 @@ struct SheetPlan {
   std::vector<double> relative_mass;       ///< mᵢ/m̄ in the problem's order [N]
   std::vector<double> weight;              ///< mᵢ·g [N]
   std::vector<double> move;                ///< h·q/mᵢ [m/N]
+  std::vector<double> speed;               ///< q/(r·mᵢ) [m/(s·N)]
   double keep = 0;                         ///< r of a substep [1]
   double first_keep = 0, first_share = 0;  ///< of the first half substep: r, and q over the full q
   double kick_time = 0;                    ///< q of a substep [s]
@@ -32,7 +33,7 @@ struct SheetPlan {
   /// A particle's springs to those after it: first_spring[i] … first_spring[i + 1] − 1.
   std::vector<Index> first_spring;   ///< [N + 1]
   std::vector<Index> far_end;        ///< [springs]
-  std::vector<double> spring;        ///< k [N/m]
+  std::vector<double> spring;        ///< k + c/h [N/m]
   std::vector<double> rest_tension;  ///< k·ℓ [N]
   std::vector<double> dashpot;       ///< c/h [N/m]; empty where there is no damping
 
@@ -47,11 +48,12 @@ struct SheetPlan {
 
 /// A sheet in flight, in the plan's order: a copyable value.
 struct SheetState {
-  bool first = true;              ///< before the first step
-  std::vector<double> positions;  ///< [3 × N], m
-  std::vector<double> impulse;    ///< u of sheet_step-inl.h [3 × N], N
-  std::vector<double> length;     ///< of the springs a substep ago [springs], m; or empty
-  std::vector<double> turn;       ///< θ − θ₀ of the hinges a step ago [hinges]; or empty
+  bool first = true;               ///< before the first step
+  std::vector<double> positions;   ///< [3 × N], m
+  std::vector<double> impulse;     ///< u of sheet_step-inl.h [3 × N], N
+  std::vector<double> velocities;  ///< see sheet_step-inl.h [3 × N], m/s
+  std::vector<double> length;      ///< of the springs a substep ago [springs], m; or empty
+  std::vector<double> turn;        ///< θ − θ₀ of the hinges a step ago [hinges]; or empty
 };
 
 /// At these positions with these velocities [3 × N], in the problem's order.
@@ -60,15 +62,14 @@ SheetState begin(const SheetPlan& plan, const Points& positions, const Points& v
 /// Advances by one step under the forces [3 × N], in the problem's order.
 void step(const SheetPlan& plan, const Points& forces, SheetState& state);
 
-/// The positions [3 × N] in the problem's order.
-void read_positions(const SheetPlan& plan, const SheetState& state, Points& positions);
+/// Values of the particles in the plan's order, as Points [3 × N] in the problem's.
+void in_user_order(const SheetPlan& plan, const std::vector<double>& values, Points& points);
 
-/// Whole flights of one sheet from `start` and its launch velocity [3 × N], one for each gain:
-/// final positions [3N] after another in `finals`, and their derivatives with respect to the gain
-/// in `derivatives` unless that is null. Equal, bit for bit, to steps of `step` under ShapeControl.
+/// Whole flights of one sheet from `start`, one for each gain: final positions [3N] after another
+/// in `finals`, and their derivatives with respect to the gain in `derivatives` unless that is
+/// null. Equal, bit for bit, to steps of `step` under ShapeControl.
 void fly(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
-         const Points& launch_velocity, std::span<const double> gains, double* finals,
-         double* derivatives);
+         std::span<const double> gains, double* finals, double* derivatives);
 
 /// Gains that `fly` takes side by side, one a SIMD lane.
 Index sheet_lanes();

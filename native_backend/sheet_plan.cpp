@@ -176,7 +176,7 @@ void add_springs(const Sheet& sheet, double h, SheetPlan& plan) {
   for (const Spring& each : all) {
     ++plan.first_spring[static_cast<std::size_t>(each.near + 1)];
     plan.far_end.push_back(each.far);
-    plan.spring.push_back(each.stiffness);
+    plan.spring.push_back(each.stiffness + each.damping / h);
     plan.rest_tension.push_back(each.stiffness * each.rest_length);
     if (damped) plan.dashpot.push_back(each.damping / h);
   }
@@ -209,7 +209,7 @@ void add_hinges(const Hinges& hinges, SheetPlan& plan) {
 
 SheetSteps choose_steps(const Problem& problem) {
   constexpr double spring_safety = 0.6;
-  constexpr double hinge_safety = 0.3;
+  constexpr double hinge_safety = 0.5;
   constexpr double default_steps = 800;
 
   const Sheet& sheet = problem.sheet();
@@ -261,6 +261,7 @@ SheetPlan make_sheet_plan(const Problem& problem, const SheetSteps& steps) {
     const double mass = sheet.particle_mass * sheet.relative_mass[user];
     plan.weight.push_back(mass * sheet.gravity);
     plan.move.push_back(plan.h * plan.kick_time / mass);
+    plan.speed.push_back(plan.kick_time / (plan.keep * mass));
   }
   add_springs(sheet, plan.h, plan);
   add_hinges(sheet.hinges, plan);

@@ -25,7 +25,8 @@ void step_sheet(const SheetPlan& plan, const double* forces, SheetState& state) 
   static_assert(sizeof(Vec3<Real>) == 3 * sizeof(double));
   const SheetArrays<Real> sheet{reinterpret_cast<Vec3<Real>*>(state.positions.data()),
                                 reinterpret_cast<Vec3<Real>*>(state.impulse.data()),
-                                state.length.data(), state.turn.data()};
+                                state.length.data(), state.turn.data(),
+                                reinterpret_cast<Vec3<Real>*>(state.velocities.data())};
   advance_sheet(plan, state.first, sheet, [&](Index i) NUNO_INLINE_LAMBDA {
     const double* force = forces + 3 * plan.user_index[static_cast<std::size_t>(i)];
     return Vec3<Real>{force[0], force[1], force[2]};
@@ -107,10 +108,8 @@ HWY_INLINE Vec3<T> sheet_center(const SheetPlan& plan, const Vec3<T>* x) {
 
 template <bool damped_control, typename T>
 void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const SheetState& start,
-                     const double* launch_velocity, std::span<const double> gains, double* finals,
-                     double* derivatives) {
+                     std::span<const double> gains, double* finals, double* derivatives) {
   const Index n = plan.particles;
-  const auto size = static_cast<std::size_t>(n);
   const auto broadcast = [](const std::vector<double>& from) NUNO_INLINE_LAMBDA {
     std::unique_ptr<T[]> to(new T[from.size()]);
     for (std::size_t i = 0; i < from.size(); ++i) to[i] = Constant<T>::of(from[i]);
@@ -121,24 +120,18 @@ void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const She
   const std::unique_ptr<T[]> length = broadcast(start.length);
   const std::unique_ptr<T[]> turn = broadcast(start.turn);
   static_assert(sizeof(Vec3<T>) == 3 * sizeof(T));
+  const std::unique_ptr<T[]> velocities = broadcast(start.velocities);
+  auto* velocity = damped_control ? reinterpret_cast<Vec3<T>*>(velocities.get()) : nullptr;
   const SheetArrays<T> sheet{reinterpret_cast<Vec3<T>*>(positions.get()),
-                             reinterpret_cast<Vec3<T>*>(impulse.get()), length.get(), turn.get()};
-  // Mean velocities over the last step, and positions before it; in the plan's order.
-  const std::unique_ptr<Vec3<T>[]> velocity(new Vec3<T>[damped_control ? size : 0]);
-  const std::unique_ptr<Vec3<T>[]> before(new Vec3<T>[damped_control ? size : 0]);
-  if constexpr (damped_control) {
-    for (Index i = 0; i < n; ++i) {
-      const double* v = launch_velocity + 3 * plan.user_index[static_cast<std::size_t>(i)];
-      velocity[i] = {Constant<T>::of(v[0]), Constant<T>::of(v[1]), Constant<T>::of(v[2])};
-    }
-  }
+                             reinterpret_cast<Vec3<T>*>(impulse.get()), length.get(), turn.get(),
+                             velocity};
   const SheetControl<T> control(plan, gains);
   for (Index step = 0; step < plan.steps; ++step) {
     const double* shape = reference.shape().data();
     const double* motion = reference.velocity().data();
     const Vec3<T> center = sheet_center(plan, sheet.x);
     Vec3<T> drift = center;
-    if constexpr (damped_control) drift = sheet_center(plan, velocity.get());
+    if constexpr (damped_control) drift = sheet_center(plan, velocity);
     advance_sheet(plan, step == 0, sheet, [&](Index i) NUNO_INLINE_LAMBDA {
       const Index user = plan.user_index[static_cast<std::size_t>(i)];
       const auto missing = [&](const double* of, const Vec3<T>& mean,
@@ -150,13 +143,9 @@ void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const She
       Vec3<T> pull = control.gain * missing(shape, center, sheet.x[i]);
       if constexpr (damped_control) {
         pull = pull + control.damping * missing(motion, drift, velocity[i]);
-        before[i] = sheet.x[i];
       }
       return scale(plan.relative_mass[static_cast<std::size_t>(user)], pull);
     });
-    if constexpr (damped_control) {
-      for (Index i = 0; i < n; ++i) velocity[i] = scale(1 / plan.H, sheet.x[i] - before[i]);
-    }
     reference.advance();
   }
   const auto count = static_cast<Index>(gains.size());
@@ -176,8 +165,7 @@ auto sheet_flight_of(const SheetPlan& plan) {
 }
 
 void fly_sheet_all(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
-                   const double* launch_velocity, std::span<const double> gains, double* finals,
-                   double* derivatives) {
+                   std::span<const double> gains, double* finals, double* derivatives) {
   const auto wide = static_cast<std::size_t>(lanes_of(Pack()));
   const std::size_t stride = static_cast<std::size_t>(3 * plan.particles);
   for (std::size_t first = 0; first < gains.size(); first += wide) {
@@ -185,7 +173,7 @@ void fly_sheet_all(const SheetPlan& plan, const ReferenceMotion& reference, cons
     const auto flight = derivatives != nullptr ? sheet_flight_of<Dual<Pack>>(plan)
                         : here.size() == 1     ? sheet_flight_of<Real>(plan)
                                                : sheet_flight_of<Pack>(plan);
-    flight(plan, reference, start, launch_velocity, here, finals + first * stride,
+    flight(plan, reference, start, here, finals + first * stride,
            derivatives == nullptr ? nullptr : derivatives + first * stride);
   }
 }
@@ -209,7 +197,7 @@ SheetState begin(const SheetPlan& plan, const Points& positions, const Points& v
   SheetState state;
   state.positions.resize(3 * n);
   state.impulse.resize(3 * n);
-  std::vector<double> rates(3 * n);
+  std::vector<double> rates(3 * n);  // of the particles
   for (std::size_t i = 0; i < n; ++i) {
     const Index user = plan.user_index[i];
     const double mass =
@@ -221,6 +209,7 @@ SheetState begin(const SheetPlan& plan, const Points& positions, const Points& v
     }
     state.impulse[3 * i + 1] -= plan.first_share * plan.weight[i];
   }
+  state.velocities = rates;
   if (!plan.dashpot.empty()) {
     const auto at = [](const std::vector<double>& values, std::size_t i) {
       return Eigen::Map<const Eigen::Vector3d>(values.data() + 3 * i);
@@ -247,19 +236,18 @@ void step(const SheetPlan& plan, const Points& forces, SheetState& state) {
   HWY_DYNAMIC_DISPATCH(step_sheet)(plan, forces.data(), state);
 }
 
-void read_positions(const SheetPlan& plan, const SheetState& state, Points& positions) {
-  positions.resize(3, plan.particles);
+void in_user_order(const SheetPlan& plan, const std::vector<double>& values, Points& points) {
+  points.resize(3, plan.particles);
   for (Index i = 0; i < plan.particles; ++i) {
-    positions.col(plan.user_index[static_cast<std::size_t>(i)]) =
-        Eigen::Map<const Eigen::Vector3d>(state.positions.data() + 3 * i);
+    points.col(plan.user_index[static_cast<std::size_t>(i)]) =
+        Eigen::Map<const Eigen::Vector3d>(values.data() + 3 * i);
   }
 }
 
 void fly(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
-         const Points& launch_velocity, std::span<const double> gains, double* finals,
-         double* derivatives) {
+         std::span<const double> gains, double* finals, double* derivatives) {
   HWY_DYNAMIC_DISPATCH(fly_sheet_all)
-  (plan, reference, start, launch_velocity.data(), gains, finals, derivatives);
+  (plan, reference, start, gains, finals, derivatives);
 }
 
 Index sheet_lanes() { return HWY_DYNAMIC_DISPATCH(sheet_lanes)(); }

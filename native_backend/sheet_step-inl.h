@@ -1,7 +1,8 @@
 // The sheet's equations of motion, written once for every number (number-inl.h).
 //
 // Springs. Between particles i and j, l = |d|, d = xⱼ − xᵢ: the force k·(l − ℓ) + c·l̇ along d. The
-// rate l̇ is that of the last substep, (l − l_before)/h.
+// rate l̇ is that of the last substep, (l − l_before)/h, so that on i the force is
+//     ((k + c/h) − (k·ℓ + c/h·l_before)/l)·d.
 //
 // Hinges. At the edge e = b − a between the triangles (a, b, c) and (b, a, d), with the normals
 //     n₁ = e × (c − a),   n₂ = (d − a) × e,
@@ -26,6 +27,15 @@
 // What is stored is u = m·v/q, so that forces add to it as they are. A pass over the particles does
 // a substep: a particle's springs to those after it give the last of its force, so it is moved at
 // once, and u goes on to r·u − m·g, ready for the next kick.
+//
+// Velocities. What control is told is the mean velocity over the last step, as the trapezoid
+//     ½·(1 + 1/n)·w_end + ½·(1 − 1/n)·w_kicked
+// of the velocity w of the last substep and that of the substep before the step, to which the kick
+// of all the step is added: centred and of second order like (x − x_before)/H, which it is where
+// n = 1. A stretch wave of frequency ω that a step does not resolve gets from control's dashpots β
+// the power −β·(½·(1 + cos ωH) + …) ≤ 0. With (x − x_before)/H it would be −β·sin(ωH)/(ωH), which
+// pumps at π < ωH < 2π: then a sheet of 1024 particles without damping of its own tore at gains
+// that half of the step took well.
 
 #if defined(NUNO_SHEET_STEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef NUNO_SHEET_STEP_INL_H_
@@ -107,7 +117,15 @@ struct SheetArrays {
   Vec3<T>* u;
   T* length;
   T* turn;
+  Vec3<T>* velocity;  ///< null where nobody asks
 };
+
+/// The velocity of the last substep of a particle with this u.
+template <typename T>
+HWY_INLINE Vec3<T> velocity_of(const SheetPlan& plan, Index i, const Vec3<T>& u) {
+  const auto at = static_cast<std::size_t>(i);
+  return scale(plan.speed[at], Vec3<T>{u.x, shift(plan.weight[at], u.y), u.z});
+}
 
 /// A substep: the springs kick for `share` of a full kick, and all move.
 template <bool damped, bool whole, typename T>
@@ -125,13 +143,12 @@ HWY_INLINE void spring_substep(const SheetPlan& plan, double share, const SheetA
       const Vec3<T> d = sheet.x[j] - x;
       const T squared = dot(d, d);
       const T inverse = rsqrt(squared);
-      const T length = squared * inverse;
-      T tension = scale_add(spring[e], length, Constant<T>::of(-rest_tension[e]));
+      T rest = Constant<T>::of(rest_tension[e]);
       if constexpr (damped) {
-        tension = scale_add(dashpot[e], length - sheet.length[e], tension);
-        sheet.length[e] = length;
+        rest = scale_add(dashpot[e], sheet.length[e], rest);
+        sheet.length[e] = squared * inverse;
       }
-      T pull = tension * inverse;
+      T pull = neg_mul_add(rest, inverse, Constant<T>::of(spring[e]));
       if constexpr (!whole) pull = scale(share, pull);
       u = add_scaled(pull, d, u);
       sheet.u[j] = subtract_scaled(pull, d, sheet.u[j]);
@@ -216,6 +233,12 @@ HWY_INLINE void advance_sheet(const SheetPlan& plan, bool first, const SheetArra
   } else {
     hinge_kick<true>(plan, kicks, sheet);
   }
+  const double end_share = 0.5 + 0.5 / static_cast<double>(plan.substeps);
+  if (sheet.velocity != nullptr) {
+    for (Index i = 0; i < plan.particles; ++i) {
+      sheet.velocity[i] = scale(1 - end_share, velocity_of(plan, i, sheet.u[i]));
+    }
+  }
   for (Index n = 0; n < plan.substeps; ++n) {
     if (plan.dashpot.empty()) {
       if (n == 0 && first) {
@@ -227,6 +250,11 @@ HWY_INLINE void advance_sheet(const SheetPlan& plan, bool first, const SheetArra
       spring_substep<true, false>(plan, share, sheet);
     } else {
       spring_substep<true, true>(plan, 1, sheet);
+    }
+  }
+  if (sheet.velocity != nullptr) {
+    for (Index i = 0; i < plan.particles; ++i) {
+      sheet.velocity[i] = scale_add(end_share, velocity_of(plan, i, sheet.u[i]), sheet.velocity[i]);
     }
   }
 }
