@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nuno/box2d.h>
+#include <nuno/bullet.h>
 #include <nuno/native.h>
 
 #include <ostream>
@@ -23,6 +24,11 @@ inline std::unique_ptr<Backend> make_native(const Problem& problem,
   return native::make_backend(with_time_step(problem, time_step));
 }
 
+inline std::unique_ptr<Backend> make_bullet(const Problem& problem,
+                                            std::optional<double> time_step) {
+  return bullet::make_backend(with_time_step(problem, time_step));
+}
+
 template <box2d::Hinge hinge>
 std::unique_ptr<Backend> make_box2d(const Problem& problem, std::optional<double> time_step) {
   return box2d::make_backend_with({.hinge = hinge}, with_time_step(problem, time_step));
@@ -33,6 +39,8 @@ inline const Engine box2d_weld_engine = {"box2d_soft_weld", make_box2d<box2d::Hi
                                          3e-4, true};
 inline const Engine box2d_pair_engine = {"box2d_spring_pair", make_box2d<box2d::Hinge::spring_pair>,
                                          3e-4, true};
+// Single precision of coordinates of the sheet's size only.
+inline const Engine bullet_engine = {"bullet", make_bullet, 1e-5, false};
 
 inline std::ostream& operator<<(std::ostream& out, const Engine& engine) {
   return out << engine.name;

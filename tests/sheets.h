@@ -84,6 +84,19 @@ inline Mesh read_plain_obj(const std::string& path) {
   return mesh;
 }
 
+/// A scene of an independent program's, in tests/data: square-to-halfpipe or disc-to-oblique.
+inline SheetScene reference_sheet(const std::string& name) {
+  const std::string path = NUNO_TEST_DATA "/sheets/" + name;
+  const Mesh start = read_plain_obj(path + "-start.obj");
+  SheetScene scene;
+  scene.name = name;
+  scene.arrival_time = 1;
+  scene.initial = start.vertices;
+  scene.faces = start.faces;
+  scene.target = read_plain_obj(path + "-target.obj").vertices;
+  return scene;
+}
+
 /// A problem with exactly this sheet, at rest as it lies; nothing pulls or brakes it unless the
 /// material says so.
 inline Problem problem_of(const Mesh& mesh, const SheetMaterial& material = {.air_drag = 0},
