@@ -71,8 +71,9 @@ void HingeForce::addScaledExplicitForce(btScalar scale, TVStack& force) {
     const btVector3 by_a = (s - 1) * by_c + (t - 1) * by_d;
     const btVector3 by_b = -s * by_c - t * by_d;
     const btScalar rate = by_a.dot(a.m_v) + by_b.dot(b.m_v) + by_c.dot(c.m_v) + by_d.dot(d.m_v);
-    const btScalar moment =
-        -scale * (hinge.stiffness * (angle - hinge.rest_angle) + hinge.damping * rate);
+    // Of a fold that rests near π and turns through it, too, the bend is the small angle.
+    const btScalar bend = std::remainder(angle - hinge.rest_angle, 2 * SIMD_PI);
+    const btScalar moment = -scale * (hinge.stiffness * bend + hinge.damping * rate);
     force[hinge.a] += moment * by_a;
     force[hinge.b] += moment * by_b;
     force[hinge.c] += moment * by_c;

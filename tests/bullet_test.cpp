@@ -131,6 +131,20 @@ TEST(BulletSheet, AHingeRestsAtTheAngleOfItsStart) {
   EXPECT_LT(f.norm(), 1e-6 * problem.sheet().hinges.stiffness[0]);
 }
 
+TEST(BulletSheet, AFoldIsPulledBackTheShortWayRound) {
+  const SheetMaterial material = {.air_drag = 0, .bending_stiffness = 1e-3};
+  const double turn = 0.3;  // through π, where the angle's sign changes
+  Problem problem = lone_hinge(pi - 0.1, material, Rest::initial);
+  const Points from = problem.cloth().initial, to = hinged(pi - 0.1 + turn).vertices;
+  const double k = problem.sheet().hinges.stiffness[0];
+  problem.sheet().initial = to;
+  const Points f = forces(problem, first_acceleration(problem, Points::Zero(3, 4)));
+  const Vector3d arm = to.col(3) - Vector3d::UnitX() * to(0, 3);
+  const double back = arm.cross((from.col(3) - to.col(3)).head<3>()).dot(Vector3d::UnitX());
+  const double moment = arm.cross(f.col(3).head<3>()).dot(Vector3d::UnitX());
+  EXPECT_NEAR(moment, std::copysign(k * turn, back), 2e-6 * k);
+}
+
 TEST(BulletSheet, AHingesDashpotBrakesItsTurning) {
   const SheetMaterial material = {.air_drag = 0, .bending_stiffness = 0, .bending_damping = 1e-4};
   const Problem problem = lone_hinge(0.7, material, Rest::flat);
