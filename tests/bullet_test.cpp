@@ -291,6 +291,30 @@ TEST(BulletLimits, AMotionOfMoreThanTheSheetsSizePerStepHasDiverged) {
   EXPECT_TRUE(pushed->failure().starts_with("a particle gets faster than"));
 }
 
+TEST(BulletLimits, ATotalForceMayBeAsLargeAsItLikes) {
+  const auto backend = bullet::make_backend(with_time_step(problem_of(grid(3, 3, 0.5)), 1e-3));
+  const Cloth& cloth = backend->cloth();
+  const double per_step = cloth.size / backend->time_step();
+  const Vector3d acceleration(0, 10 * per_step / backend->time_step(), 0);
+  const auto sheet = backend->start(Points::Zero(3, 9));
+  sheet->step(cloth.particle_mass * acceleration * cloth.relative_mass.transpose());
+  ASSERT_EQ(sheet->failure(), "");
+  EXPECT_NEAR(cloth.mass_center(sheet->velocities()).y(), 5 * per_step, 1e-9 * per_step);
+}
+
+TEST(BulletLimits, ACrumpledSheetOpensAsFastAsItIsLaunched) {
+  // Bullet moves no node by more than the diagonal of the body's box, which here is small.
+  const auto backend = bullet::make_backend(with_time_step(problem_of(grid(3, 3, 0.5)), 1e-5));
+  const Points small = 1e-3 * backend->cloth().initial;
+  const Points opening =
+      0.5 * backend->cloth().size / backend->time_step() * backend->cloth().initial;
+  const auto sheet = backend->start(small, opening);
+  sheet->step(Points::Zero(3, 9));
+  const Points expected = small + backend->time_step() * opening;
+  // Springs turn the velocity by h²·k/m, 1e-6, of their length.
+  EXPECT_LT((sheet->positions() - expected).norm(), 1e-4);
+}
+
 TEST(BulletLimits, ASheetThatHasCollapsedFliesOnOrGivesUpInWords) {
   const Mesh mesh = grid(3, 3, 0.5);
   const auto backend = bullet::make_backend(problem_of(mesh, {.bending_stiffness = 1e-3}));
