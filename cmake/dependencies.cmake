@@ -69,12 +69,36 @@ set(BOX2D_BUILD_TESTBED OFF)
 set(BOX2D_BUILD_UNIT_TESTS OFF)
 nuno_find_or_fetch(box2d 2.4.1 box2d::box2d https://github.com/erincatto/box2d.git v2.4.1)
 
+# Debian's own CMake package of Bullet names no targets and no folders that can be used; its
+# pkg-config also tells the precision that it was built with.
+find_package(PkgConfig QUIET)
+if(PkgConfig_FOUND)
+  pkg_check_modules(bullet QUIET IMPORTED_TARGET bullet)
+endif()
+if(NOT TARGET PkgConfig::bullet)
+  set(BUILD_BULLET2_DEMOS OFF)
+  set(BUILD_BULLET3 OFF)
+  set(BUILD_CPU_DEMOS OFF)
+  set(BUILD_ENET OFF)
+  set(BUILD_CLSOCKET OFF)
+  set(BUILD_EXTRAS OFF)
+  set(BUILD_OPENGL3_DEMOS OFF)
+  set(BUILD_UNIT_TESTS OFF)
+  set(USE_GRAPHICAL_BENCHMARK OFF)
+  nuno_find_or_fetch(
+    bullet 3.24 BulletSoftBody https://github.com/bulletphysics/bullet3.git 3.24)
+  add_library(nuno_bullet_engine INTERFACE)
+  add_library(PkgConfig::bullet ALIAS nuno_bullet_engine)
+  target_include_directories(nuno_bullet_engine SYSTEM INTERFACE "${bullet_SOURCE_DIR}/src")
+  target_link_libraries(nuno_bullet_engine INTERFACE BulletSoftBody BulletDynamics BulletCollision
+                                                     LinearMath)
+endif()
+
 if(NUNO_BUILD_DEMOS)
   nuno_find_or_fetch(
     CLI11 2.1 CLI11::CLI11 https://github.com/CLIUtils/CLI11.git v2.1.2 HEADERS include)
 
   # Debian's is a shared library whose defines, which only pkg-config knows, are part of its ABI.
-  find_package(PkgConfig QUIET)
   if(PkgConfig_FOUND)
     pkg_check_modules(cpp-httplib QUIET IMPORTED_TARGET cpp-httplib)
   endif()

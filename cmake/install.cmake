@@ -1,5 +1,5 @@
 # find_package(nuno) for other projects: nuno::core, nuno::native, nuno::box2d,
-# nuno::formats, nuno::engines.
+# nuno::bullet, nuno::formats, nuno::engines.
 # A package can only name dependencies that it can find again, so not those that were fetched.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -17,13 +17,13 @@ endif()
 set(package_directory "${CMAKE_INSTALL_LIBDIR}/cmake/nuno")
 
 install(
-  TARGETS nuno_core nuno_native nuno_box2d nuno_formats nuno_engines
+  TARGETS nuno_core nuno_native nuno_box2d nuno_bullet nuno_formats nuno_engines
   EXPORT nuno
   ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
   INCLUDES DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(
-  DIRECTORY core/include/ native_backend/include/ box2d_backend/include/ formats/include/
-            engines/include/
+  DIRECTORY core/include/ native_backend/include/ box2d_backend/include/ bullet_backend/include/
+            formats/include/ engines/include/
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILES_MATCHING
   PATTERN "*.h")

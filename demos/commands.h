@@ -24,7 +24,8 @@ struct SimulateOptions {
   std::string backend = "native";   ///< one of backend_names
   Gains gains = 0;                  ///< α ≥ 0 [N/m]; 0 is launch only
   std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
-  std::string out;                  ///< result file, "-" for standard output, empty for none
+  /// Animated mesh (.glb, of a sheet), else result file; "-" for standard output, empty for none.
+  std::string out;
 };
 
 /// The search for the best gain.
@@ -40,7 +41,19 @@ struct OptimizeOptions {
   bool refine = false;              ///< corrects the reference until the cloth is on the target
   bool robust = false;              ///< the error averaged over small perturbations of the start
   std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
-  std::string out;                  ///< result file, "-" for standard output, empty for none
+  /// Animated mesh (.glb, of a sheet), else result file; "-" for standard output, empty for none.
+  std::string out;
+};
+
+/// A cloth of two meshes thrown with what an animator wants: along a damped morph, at the best gain.
+struct ThrowOptions {
+  std::string start, target;       ///< mesh files, the same faces in two poses
+  double arrival_time = 0;         ///< t₀ [s], > 0
+  std::string material;            ///< one of named_materials; empty: the default values
+  std::string backend = "native";  ///< one of sheet_engines
+  double frames_per_second = 24;   ///< of the animation [1/s], > 0
+  bool settle = false;             ///< the cloth comes to rest on the target
+  std::string out;                 ///< animated mesh (.glb) or result (.json), or empty for none
 };
 
 /// Both engines on the same scenes.
@@ -70,6 +83,7 @@ struct RenderOptions {
 // The commands. They throw InputError and OutputError, and say themselves why a rollout diverged.
 ExitStatus simulate(const SimulateOptions& options);
 ExitStatus optimize(const OptimizeOptions& options);
+ExitStatus throw_cloth(const ThrowOptions& options);
 ExitStatus compare(const CompareOptions& options);
 ExitStatus make_figures(const FiguresOptions& options);
 ExitStatus render(const RenderOptions& options);

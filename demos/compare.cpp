@@ -128,16 +128,17 @@ ExitStatus compare(const CompareOptions& options) {
   // scene shows at once.
   struct Pair {
     SceneFile file;
-    std::unique_ptr<Backend> native, box2d;
+    std::unique_ptr<Backend> first, second;
   };
   std::vector<Pair> pairs;
   std::size_t width = 5;
   for (const std::string& path : scene_paths(options.scenes)) {
     SceneFile file = read_scene_file(path);
-    auto native = make_backend("native", file);
-    auto box2d = make_backend("box2d", file);
+    const auto& [one, other] = engines_for(file.problem);
+    auto first = make_backend(one, file);
+    auto second = make_backend(other, file);
     width = std::max(width, fmt::formatted_size("{:.32}", printable(file.scene.name)));
-    pairs.push_back({std::move(file), std::move(native), std::move(box2d)});
+    pairs.push_back({std::move(file), std::move(first), std::move(second)});
   }
   std::string out = options.out;
   const bool to_folder = !out.empty() && out != "-";
@@ -154,7 +155,7 @@ ExitStatus compare(const CompareOptions& options) {
   print_heading(table, width);
   for (const Pair& pair : pairs) {
     Comparison comparison = compare_engines(
-        pair.file.scene.name, *pair.native, *pair.box2d,
+        pair.file.scene.name, *pair.first, *pair.second,
         {.objective_of = [&](const Backend& backend) {
           return with_progress(objective(backend),
                                fmt::format("{} on {}", pair.file.scene.name, backend.name()));
@@ -162,17 +163,17 @@ ExitStatus compare(const CompareOptions& options) {
     clear_progress();
     if (comparison.divergence) {
       const auto& [backend, flight] = *comparison.divergence;
-      report_divergence(pair.file.path, backend == "native" ? *pair.native : *pair.box2d, flight);
+      report_divergence(pair.file.path, backend == pair.first->name() ? *pair.first : *pair.second, flight);
       status = ExitStatus::diverged;
       continue;
     }
     print_rows(table, width, comparison);
     std::fflush(table);
-    if (to_folder) report.push_back(make_report_scene(comparison, *pair.native, *pair.box2d));
+    if (to_folder) report.push_back(make_report_scene(comparison, *pair.first, *pair.second));
     comparisons.push_back(std::move(comparison));
   }
   fmt::print(table,
-             "L is the cloth's length. Shapes apart: the end shapes of both engines at the best α "
+             "L is the cloth's length, of a sheet √(rest area). Shapes apart: the end shapes of both engines at the best α "
              "of native,\ncentroids aligned, mean over the particles.\n");
   if (comparisons.size() > 1) print_summary(table, summarize(comparisons));
   // What is left of a comparison with diverged scenes is still one; without any, it is none.

@@ -23,9 +23,7 @@ namespace fs = std::filesystem;
 using namespace figures;
 
 SceneFile own_scene(std::string_view json, const std::string& name) {
-  SceneFile file{name, parse_scene(std::string(json), name), {}};
-  file.problem = make_problem(file.scene);
-  return file;
+  return make_scene_file(name, parse_scene(std::string(json), name));
 }
 
 Rollout flown(const SceneFile& file, const Backend& backend, double gain) {
@@ -66,7 +64,7 @@ struct Figure {
 
 Figure figure_5(const SceneFile& file) {
   std::vector<GainCurve> curves;
-  for (const std::string_view name : backend_names) {
+  for (const std::string_view name : chain_engines) {
     const auto backend = make_backend(name, file);
     curves.push_back(gain_curve(file, *backend, name == "native" ? 1000 : 200));
   }
@@ -74,7 +72,7 @@ Figure figure_5(const SceneFile& file) {
       curves, file.problem.cloth().size,
       {.title = "Error at arrival against the gain of the shape control",
        .subtitle = fmt::format("{}, {} particles, t₀ = {} s, both engines", file.scene.name,
-                               file.scene.particles, file.scene.arrival_time)});
+                               file.problem.cloth().particles(), file.scene.arrival_time)});
   return {"figure-5", drawing.svg()};
 }
 
@@ -86,7 +84,7 @@ Figure flight_figure(const std::string& name, const std::string& title, const Sc
       .title = title,
       .subtitle = fmt::format("{} particles, α = {} N/m{}: mean error {:.2f} % of the cloth’s "
                               "length, worst particle {:.1f} %",
-                              file.scene.particles, shown(gain), how, percent * flight.error.mean,
+                              file.problem.cloth().particles(), shown(gain), how, percent * flight.error.mean,
                               percent * flight.error.max)};
   return {name, draw_flights({make_flight(file.scene.name, backend, flight)}, options).svg()};
 }

@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include <nuno/engines.h>
+#include <nuno/materials.h>
 #include <nuno/output.h>
 #include "commands.h"
 #include "studio/studio.h"
@@ -75,7 +76,7 @@ void add_scene(CLI::App& command, std::string& scene) {
   command
       .add_option_function<std::string>(
           "SCENE", [&](const std::string& text) { scene = not_empty("SCENE", text); },
-          "ChainScene file (JSON)")
+          "Scene file (JSON)")
       ->type_name("")
       ->required();
 }
@@ -85,7 +86,8 @@ void add_backend(CLI::App& command, std::string& backend) {
       .add_option_function<std::string>(
           "--backend",
           [&](const std::string& text) { backend = word("--backend", text, backend_names); },
-          fmt::format("Engine: {}", fmt::join(backend_names, " or ")))
+          fmt::format("Engine: {} for chains, {} for sheets",
+                      fmt::join(chain_engines, " or "), fmt::join(sheet_engines, " or ")))
       ->type_name("NAME")
       ->default_str(backend);
 }
@@ -111,8 +113,70 @@ void add_out(CLI::App& command, std::string& out, const char* type, const char* 
       ->type_name(type);
 }
 
+/// An option whose value is a number > 0.
+void add_positive(CLI::App& command, const char* name, const char* type, double& into,
+                  const char* description) {
+  command
+      .add_option_function<std::string>(
+          name,
+          [name, &into](const std::string& text) {
+            into = number(name, text);
+            if (!(into > 0)) throw CLI::ValidationError(name, fmt::format("{} is not > 0", text));
+          },
+          description)
+      ->type_name(type);
+}
+
+void add_file(CLI::App& command, const char* name, std::string& into, const char* description) {
+  command
+      .add_option_function<std::string>(
+          name, [name, &into](const std::string& text) { into = not_empty(name, text); },
+          description)
+      ->type_name("")
+      ->required();
+}
+
+void add_throw_options(CLI::App& command, ThrowOptions& options) {
+  add_file(command, "START", options.start, "Mesh of the cloth as it is (.obj)");
+  add_file(command, "TARGET", options.target, "The same mesh as it should be (.obj)");
+  add_positive(command, "--time", "T", options.arrival_time, "Arrival time [s], > 0");
+  command.get_option("--time")->required();
+  add_out(command, options.out, "FILE",
+          "Animated mesh (.glb) or result (.json; - is standard output)");
+  command
+      .add_option_function<std::string>(
+          "--material",
+          [&](const std::string& text) {
+            if (!find_material(text)) {
+              throw CLI::ValidationError(
+                  "--material", fmt::format("\"{}\" is not one of {}", text, material_names()));
+            }
+            options.material = text;
+          },
+          fmt::format("Cloth: {}", material_names()))
+      ->type_name("M");
+  command
+      .add_option_function<std::string>(
+          "--backend",
+          [&](const std::string& text) {
+            options.backend = word("--backend", text, sheet_engines);
+          },
+          fmt::format("Engine: {}", fmt::join(sheet_engines, " or ")))
+      ->type_name("NAME")
+      ->default_str(options.backend);
+  add_positive(command, "--frames-per-second", "R", options.frames_per_second,
+               "Frames of the animation [1/s], > 0");
+  command.get_option("--frames-per-second")->default_str(
+      fmt::format("{}", options.frames_per_second));
+  command.add_flag("--settle", options.settle, "The cloth comes to rest on the target");
+  command.footer(
+      "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"
+      "with \"damping_ratio\": 0.7 in a scene, at the gain of least error at arrival.");
+}
+
 constexpr const char* commands = "Commands";  // their heading in the help
-constexpr const char* out_file = "Result file (JSON); - is standard output";
+constexpr const char* out_file =
+    "Result (JSON; - is standard output), or of a sheet an animated mesh (.glb)";
 
 // Below the options of every command that throws scenes.
 constexpr const char* which_reference = R"(What the control pulls towards is the scene's choice:
@@ -289,6 +353,13 @@ ExitStatus run(int argc, char** argv) {
     }
     chosen = [&] { return optimize(optimization); };
   });
+
+  ThrowOptions throwing;
+  CLI::App& throw_command = *app.add_subcommand(
+      "throw", "Throw a mesh so that it arrives as another pose of itself, as an animated mesh");
+  add_throw_options(throw_command, throwing);
+  throw_command.group(commands);
+  throw_command.callback([&] { chosen = [&] { return throw_cloth(throwing); }; });
 
   CompareOptions comparison;
   CLI::App& compare_command =

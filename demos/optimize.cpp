@@ -79,9 +79,13 @@ bool is_better(const Rollout& a, const Rollout& b, const OptimizeOptions& option
 }  // namespace
 
 ExitStatus optimize(const OptimizeOptions& options) {
-  SceneFile file = read_scene_for(options.out, options.scene, options.time_step);
+  return optimize(read_scene_file(options.scene, options.time_step), options);
+}
+
+ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
+  require_room(file, options.out);
   require_groups(file, options.coefficients);
-  if (options.refine) require_few_particles_to_refine(file);
+  if (options.refine) require_refinable(file);
   auto backend = make_backend(options.backend, file);
   std::FILE* const summary = people(options.out);
   if (const std::string words = verdict(assess(*backend)); !words.empty()) {

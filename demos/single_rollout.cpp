@@ -1,18 +1,28 @@
 #include "single_rollout.h"
 
+#include <fmt/format.h>
+
 #include <nuno/conditioning.h>
+#include <nuno/glb_file.h>
 #include <nuno/output.h>
 #include <nuno/progress.h>
 #include "pictures/summary.h"
 
 namespace nuno {
 
-SceneFile read_scene_for(const std::string& out, const std::string& path,
-                         std::optional<double> time_step) {
-  SceneFile file = read_scene_file(path, time_step);
+namespace {
+
+bool is_animated_mesh(const std::string& out) { return out.ends_with(".glb"); }
+
+}  // namespace
+
+void require_room(const SceneFile& file, const std::string& out) {
+  if (is_animated_mesh(out) && !file.mesh) {
+    throw InputError(
+        fmt::format("--out: {}: a .glb holds a sheet, and {} is a chain", out, file.path));
+  }
   if (!out.empty()) require_few_frames(file);
   require_writable(out);
-  return file;
 }
 
 ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains,
@@ -26,7 +36,11 @@ ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains
   const double growth = bounded_sensitivity(backend, flight);
   if (!out.empty()) {
     write_output(out, [&](std::FILE* result) {
-      write_result(result, file.scene.name, backend, flight, growth, optimization);
+      if (is_animated_mesh(out)) {
+        write_glb(result, file.scene.name, *file.mesh, flight.frame_times, flight.frame_positions);
+      } else {
+        write_result(result, file.scene.name, backend, flight, growth, optimization);
+      }
     });
   }
   print_summary(people(out), file.scene.name, backend, flight, growth);

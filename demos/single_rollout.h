@@ -11,10 +11,14 @@
 
 namespace nuno {
 
-/// A scene whose result goes to `out` (none if that is empty): read, validated, and known to have
-/// room for its frames, in memory and at `out`, before any work is done.
-SceneFile read_scene_for(const std::string& out, const std::string& path,
-                         std::optional<double> time_step);
+/// Throws InputError or OutputError, before any work is done, where a result of this scene would
+/// not have room for its frames, in memory and at `out` (none if that is empty), or the kind of
+/// file does not hold such a cloth.
+void require_room(const SceneFile& file, const std::string& out);
+
+/// Searches the gain that the options ask for in this scene, in place of the options' own, and flies
+/// at it.
+ExitStatus optimize(SceneFile file, const OptimizeOptions& options);
 
 /// Flies once, writes the result to `out` and tells people what happened, or why the flight
 /// diverged.

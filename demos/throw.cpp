@@ -1,21 +1,36 @@
-// Throws a metre of cloth so that it arrives three metres away as an arch, after one second.
-#include <nuno/native.h>
-#include <nuno/optimize.h>
-#include <nuno/rollout.h>
+// nuno throw: two meshes in, an animated one out.
 
-#include <iostream>
+#include <fmt/format.h>
 
-int main() {
-  nuno::ChainScene scene;
-  scene.arrival_time = 1;
-  scene.initial = nuno::Points{{0, 1}, {1, 1}};  // a row for x, a row for y, a column per point
-  scene.target = nuno::Points{{3.0, 3.2, 3.5, 3.8, 4.0}, {1.0, 1.3, 1.4, 1.3, 1.0}};
+#include <filesystem>
 
-  const auto cloth = nuno::native::make_backend(nuno::make_problem(scene));
-  const auto launch_only = nuno::rollout(*cloth, 0);
-  const auto best = nuno::global_search(nuno::objective(*cloth));
-  const auto flight = nuno::rollout(*cloth, best.gain);
+#include <nuno/materials.h>
+#include <nuno/scene_file.h>
+#include "commands.h"
+#include "single_rollout.h"
 
-  std::cout << "launch only: " << launch_only.error.mean << " m from the target\n"
-            << "controlled:  " << flight.error.mean << " m, at a gain of " << best.gain << " N/m\n";
+namespace nuno {
+
+ExitStatus throw_cloth(const ThrowOptions& options) {
+  const std::string& out = options.out;
+  if (!out.empty() && out != "-" && !out.ends_with(".glb") && !out.ends_with(".json")) {
+    throw InputError(fmt::format("--out: \"{}\" does not end in .glb or .json", out));
+  }
+  SheetScene scene;
+  scene.name = std::filesystem::path(options.target).stem().string();
+  scene.arrival_time = options.arrival_time;
+  scene.frames_per_second = options.frames_per_second;
+  scene.reference = Reference::morph;
+  scene.damping_ratio = 0.7;  // what swings about the motion dies away within a swing
+  scene.arrival = options.settle ? Arrival::settle : Arrival::pass;
+  if (!options.material.empty()) scene.cloth = find_material(options.material)->cloth;
+  const std::string source = fmt::format("{} to {}", options.start, options.target);
+  SceneFile file = make_scene_file(
+      source, with_meshes(std::move(scene), options.start, options.target, source));
+  OptimizeOptions search;
+  search.backend = options.backend;
+  search.out = out;
+  return optimize(std::move(file), search);
 }
+
+}  // namespace nuno

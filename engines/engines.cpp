@@ -1,13 +1,14 @@
 #include <nuno/engines.h>
-#include <nuno/scene_file.h>
 
 #include <fmt/format.h>
 
 #include <nuno/box2d.h>
+#include <nuno/bullet.h>
 #include <nuno/native.h>
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
 namespace nuno {
 namespace {
@@ -19,87 +20,111 @@ constexpr double most_points_in_frames = 1e8;
 constexpr double most_particle_steps = 1e10;
 
 bool too_long(double steps, const SceneFile& file) {
-  return !(steps * static_cast<double>(file.scene.particles) <= most_particle_steps);
+  return !(steps * static_cast<double>(file.problem.cloth().particles()) <= most_particle_steps);
+}
+
+std::unique_ptr<Backend> make_named(std::string_view name, const Problem& problem) {
+  const auto& able = engines_for(problem);
+  if (std::ranges::find(able, name) == able.end()) {
+    throw InputError(fmt::format("{} does not fly a {}; those that do: {}", name,
+                                 problem.is_sheet() ? "sheet" : "chain", fmt::join(able, ", ")));
+  }
+  if (name == "native") return native::make_backend(problem);
+  if (name == "bullet") return bullet::make_backend(problem);
+  assert(name == "box2d");
+  return box2d::make_backend(problem);
 }
 
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file,
                                       std::optional<double> time_step) {
   const Problem problem = with_time_step(file.problem, time_step);
+  const Index particles = problem.cloth().particles();
   if (time_step && too_long(file.scene.arrival_time / *time_step, file)) {
     throw InputError(fmt::format(
         "{}: /time_step: {} is not >= {:.4g}: {} particles over {} s would take too long",
         file.path, *time_step,
-        file.scene.arrival_time * static_cast<double>(file.scene.particles) / most_particle_steps,
-        file.scene.particles, file.scene.arrival_time));
+        file.scene.arrival_time * static_cast<double>(particles) / most_particle_steps, particles,
+        file.scene.arrival_time));
   }
   std::unique_ptr<Backend> backend;
   try {
-    if (name == "native") {
-      backend = native::make_backend(problem);
-    } else {
-      assert(name == "box2d");
-      backend = box2d::make_backend(problem);
-    }
+    backend = make_named(name, problem);
   } catch (const InputError& error) {
     // An engine knows the problem, but not the file that it came from.
     throw InputError(fmt::format("{}: {}", file.path, error.what()));
   }
   if (too_long(static_cast<double>(backend->steps()), file)) {
     throw InputError(
-        fmt::format("{}: /particles: {} is not few enough: so stiff and fine a cloth takes {} "
+        fmt::format("{}: /{}: {} particles are not few enough: so stiff and fine a cloth takes {} "
                     "steps on {}, which is too long",
-                    file.path, file.scene.particles, backend->steps(), name));
+                    file.path, problem.is_sheet() ? "initial" : "particles", particles,
+                    backend->steps(), name));
   }
   return backend;
 }
 
-SceneFile made_ready(const std::string& path, ChainScene scene) {
-  Problem problem = make_problem(scene, path);
-  return {path, std::move(scene), std::move(problem)};
-}
-
 }  // namespace
 
-SceneFile read_scene_file(const std::string& path, std::optional<double> time_step) {
-  ChainScene scene = read_scene(path);
-  if (time_step) {
-    scene.time_step = time_step;
-    validate(scene, "--time-step");
+SceneFile make_scene_file(const std::string& path, AnyScene scene) {
+  if (auto* chain = std::get_if<ChainScene>(&scene)) {
+    return {path, *chain, make_problem(*chain, path)};
   }
-  return made_ready(path, std::move(scene));
+  auto& sheet = std::get<SheetInput>(scene);
+  return {path, sheet.scene, make_problem(sheet.scene, path), std::move(sheet.mesh)};
 }
 
-SceneFile parse_scene_file(const std::string& json, const std::string& path) {
-  return made_ready(path, parse_scene(json, path));
+SceneFile read_scene_file(const std::string& path, std::optional<double> time_step) {
+  AnyScene scene = read_scene(path);
+  if (time_step) {
+    const auto replace = [&](auto& of) {
+      of.time_step = time_step;
+      validate(of, "--time-step");
+    };
+    if (auto* chain = std::get_if<ChainScene>(&scene)) {
+      replace(*chain);
+    } else {
+      replace(std::get<SheetInput>(scene).scene);
+    }
+  }
+  return make_scene_file(path, std::move(scene));
 }
 
-double frames_per_second_of(double points, const ChainScene& scene) {
-  return points / static_cast<double>(scene.particles) / scene.arrival_time;
+double frames_per_second_of(double points, const SceneFile& file) {
+  return points / static_cast<double>(file.problem.cloth().particles()) / file.scene.arrival_time;
 }
 
 void require_few_frames(const SceneFile& file) {
-  const ChainScene& scene = file.scene;
-  const double most = frames_per_second_of(most_points_in_frames, scene);
-  if (scene.frames_per_second > most) {
+  const double most = frames_per_second_of(most_points_in_frames, file);
+  if (file.scene.frames_per_second > most) {
     throw InputError(fmt::format(
         "{}: /frames_per_second: {} is not <= {:.4g}, the most that a result of {} particles over "
         "{} s holds",
-        file.path, scene.frames_per_second, most, scene.particles, scene.arrival_time));
+        file.path, file.scene.frames_per_second, most, file.problem.cloth().particles(),
+        file.scene.arrival_time));
   }
 }
 
-void require_few_particles_to_refine(const SceneFile& file) {
+void require_refinable(const SceneFile& file) {
+  if (file.problem.is_sheet()) {
+    throw InputError(fmt::format("{}: /initial: a sheet is not refined, only a chain", file.path));
+  }
   constexpr Index most = 128;  // a jacobian takes N times as long as a flight, and N² numbers
-  if (file.scene.particles <= most) return;
-  throw InputError(fmt::format("{}: /particles: {} is not <= {}, the most to refine", file.path,
-                               file.scene.particles, most));
+  const Index particles = file.problem.cloth().particles();
+  if (particles <= most) return;
+  throw InputError(
+      fmt::format("{}: /particles: {} is not <= {}, the most to refine", file.path, particles, most));
 }
 
 void require_groups(const SceneFile& file, Index groups) {
-  const Index fewest = fewest_particles(groups);
-  if (groups > 1 && file.scene.particles < fewest) {
+  if (groups <= 1) return;
+  if (file.problem.is_sheet()) {
+    throw InputError(
+        fmt::format("{}: /initial: a sheet takes one gain, not {}", file.path, groups));
+  }
+  const Index fewest = fewest_particles(groups), particles = file.problem.cloth().particles();
+  if (particles < fewest) {
     throw InputError(fmt::format("{}: /particles: {} is not >= {}, the fewest for {} coefficients",
-                                 file.path, file.scene.particles, fewest, groups));
+                                 file.path, particles, fewest, groups));
   }
 }
 

@@ -45,7 +45,9 @@ void print(std::FILE* file, const Json& value, std::size_t indent = 0) {
 
 Json to_json(const Points& points) {
   Json array = Json::array();
-  for (Index i = 0; i < points.cols(); ++i) array.push_back({points(0, i), points(1, i)});
+  for (Index i = 0; i < points.cols(); ++i) {
+    array.push_back(std::vector<double>(points.col(i).begin(), points.col(i).end()));
+  }
   return array;
 }
 
@@ -162,7 +164,7 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
                {"alpha", rollout.gains.rest},
                {"time_step", backend.time_step()},
                {"steps", backend.steps()},
-               {"cloth_length", problem.cloth().size},
+               {problem.is_sheet() ? "size" : "cloth_length", problem.cloth().size},
                {"target_scale", problem.target_scale},
                {"error",
                 {{"mean", rollout.error.mean},
@@ -174,6 +176,10 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
                {"sensitivity", sensitivity}};
   if (rollout.gains.count() > 1) head["alphas"] = rollout.gains.groups();
   if (optimization) head["optimization"] = to_json(*optimization);
+  if (problem.is_sheet()) {
+    head["kind"] = "sheet";
+    head["faces"] = problem.sheet().faces;
+  }
   head["launch_velocity"] = to_json(rollout.launch_velocity);
   head["target"] = to_json(problem.target);
   head["final"] = to_json(rollout.final);

@@ -1,3 +1,4 @@
+#include <nuno/materials.h>
 #include <nuno/scene_file.h>
 
 #include <fmt/format.h>
@@ -11,7 +12,10 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
+#include <optional>
 #include <span>
+#include <type_traits>
+#include <vector>
 
 namespace nuno {
 namespace {
@@ -76,6 +80,10 @@ void read(const Json& object, const Field& parent, const char* name, double& int
   if (object.contains(name)) into = number(object[name], parent.child(name));
 }
 
+void read(const Json& object, const Field& parent, const char* name, std::optional<double>& into) {
+  if (object.contains(name)) into = number(object[name], parent.child(name));
+}
+
 void read(const Json& object, const Field& parent, const char* name, Index& into) {
   if (!object.contains(name)) return;
   const Field at = parent.child(name);
@@ -96,7 +104,6 @@ void read(const Json& object, const Field& parent, const char* name, std::string
 
 void read(const Json& object, const Field& parent, const char* name, Points& into) {
   const Field at = parent.child(name);
-  if (!object.contains(name)) at.refuse("is missing; it is required");
   const Json& points = object[name];
   if (!points.is_array()) at.refuse(fmt::format("{} is not an array of points", shown(points)));
   into.resize(2, static_cast<Index>(points.size()));
@@ -126,6 +133,9 @@ constexpr std::array arrival_words = {Word<Arrival>{"pass", Arrival::pass},
                                       Word<Arrival>{"settle", Arrival::settle}};
 constexpr std::array target_length_words = {Word<TargetLength>{"fit", TargetLength::fit},
                                             Word<TargetLength>{"as-drawn", TargetLength::as_drawn}};
+
+constexpr std::array rest_words = {Word<Rest>{"initial", Rest::initial},
+                                   Word<Rest>{"flat", Rest::flat}};
 
 template <typename Words, typename Enum>
 void read(const Json& object, const Field& parent, const char* name, const Words& words,
@@ -183,95 +193,203 @@ Json to_json(const Points& points) {
   return array;
 }
 
-}  // namespace
+// Every field of a scene file stands here once, with the words that it may have; what lists, reads
+// and writes scenes visits them.
 
-ChainScene parse_scene(const std::string& text, const std::string& source) {
-  const Json json = parse_json(text, source);
-  const Field root{source, ""};
-  static constexpr std::array<std::string_view, 15> known = {
-      "nuno_scene", "name",          "particles",     "arrival_time", "gravity",
-      "initial",    "target",        "cloth",         "launch",       "reference",
-      "arrival",    "damping_ratio", "target_length", "time_step",    "frames_per_second"};
-  static constexpr std::array<std::string_view, 6> known_cloth = {
-      "mass",         "air_drag", "stretch_stiffness", "stretch_damping", "hinge_stiffness",
-      "hinge_damping"};
+template <typename SceneOf, typename Visit>
+void visit_first(SceneOf& scene, Visit&& visit) {
+  visit("name", scene.name);
+  if constexpr (requires { scene.particles; }) visit("particles", scene.particles);
+  visit("arrival_time", scene.arrival_time);
+  visit("gravity", scene.gravity);
+}
+
+template <typename SceneOf, typename Visit>
+void visit_last(SceneOf& scene, Visit&& visit) {
+  if constexpr (requires { scene.rest; }) visit("rest", scene.rest, rest_words);
+  visit("launch", scene.launch, launch_words);
+  visit("reference", scene.reference, reference_words);
+  visit("arrival", scene.arrival, arrival_words);
+  visit("damping_ratio", scene.damping_ratio);
+  visit("target_length", scene.target_length, target_length_words);
+  visit("time_step", scene.time_step);
+  visit("frames_per_second", scene.frames_per_second);
+}
+
+template <typename Visit>
+void visit_material(std::convertible_to<const ChainMaterial&> auto& cloth, Visit&& visit) {
+  visit("mass", cloth.mass);
+  visit("air_drag", cloth.air_drag);
+  visit("stretch_stiffness", cloth.stretch_stiffness);
+  visit("stretch_damping", cloth.stretch_damping);
+  visit("hinge_stiffness", cloth.hinge_stiffness);
+  visit("hinge_damping", cloth.hinge_damping);
+}
+
+template <typename Visit>
+void visit_material(std::convertible_to<const SheetMaterial&> auto& cloth, Visit&& visit) {
+  visit("areal_density", cloth.areal_density);
+  visit("air_drag", cloth.air_drag);
+  visit("stretch_stiffness", cloth.stretch_stiffness);
+  visit("stretch_damping", cloth.stretch_damping);
+  visit("shear_stiffness", cloth.shear_stiffness);
+  visit("shear_damping", cloth.shear_damping);
+  visit("bending_stiffness", cloth.bending_stiffness);
+  visit("bending_damping", cloth.bending_damping);
+}
+
+/// Reads each field that `object`, at `at`, has.
+struct FieldReader {
+  const Json& object;
+  const Field& at;
+  void operator()(const char* name, auto& into, const auto&... words) const {
+    read(object, at, name, words..., into);
+  }
+};
+
+/// Notes each field's name.
+struct FieldLister {
+  std::vector<std::string_view>& names;
+  void operator()(const char* name, const auto&...) const { names.push_back(name); }
+};
+
+/// Writes each field that has a value.
+struct FieldWriter {
+  Json& object;
+  void operator()(const char* name, const auto& value) const { object[name] = value; }
+  void operator()(const char* name, const std::optional<double>& value) const {
+    if (value) object[name] = *value;
+  }
+  void operator()(const char* name, auto value, const auto& words) const {
+    object[name] = word_for(words, value);
+  }
+};
+
+/// Throws InputError for a field that no scene of this form has, or one that is missing.
+template <typename SceneOf>
+void require_fields(const Json& json, const Field& root) {
+  std::vector<std::string_view> known = {"nuno_scene", "initial", "target", "cloth"};
+  if constexpr (std::is_same_v<SceneOf, SheetScene>) known.push_back("material");
+  SceneOf scene;
+  visit_first(scene, FieldLister{known});
+  visit_last(scene, FieldLister{known});
   require_known_fields(json, root, known);
-  if (!json.contains("nuno_scene")) root.child("nuno_scene").refuse("is missing; it is required");
-  if (json["nuno_scene"] != 1) {
-    root.child("nuno_scene").refuse(fmt::format("{} is not 1", shown(json["nuno_scene"])));
+  for (const char* name : {"nuno_scene", "arrival_time", "initial", "target"}) {
+    if (!json.contains(name)) root.child(name).refuse("is missing; it is required");
+    if (name == std::string_view("nuno_scene") && json[name] != 1) {
+      root.child(name).refuse(fmt::format("{} is not 1", shown(json[name])));
+    }
   }
-  if (!json.contains("arrival_time")) {
-    root.child("arrival_time").refuse("is missing; it is required");
-  }
+}
 
+void read_material(const Json& json, const Field& root, auto& cloth) {
+  if (!json.contains("cloth")) return;
+  const Field at = root.child("cloth");
+  std::vector<std::string_view> known;
+  visit_material(cloth, FieldLister{known});
+  require_known_fields(json["cloth"], at, known);
+  visit_material(cloth, FieldReader{json["cloth"], at});
+}
+
+bool is_sheet(const Json& json) {
+  return json.is_object() && json.contains("initial") && json["initial"].is_string();
+}
+
+ChainScene read_chain(const Json& json, const std::string& source) {
+  const Field root{source, ""};
+  require_fields<ChainScene>(json, root);
   ChainScene scene;
   scene.name = std::filesystem::path(source).stem().string();
-  read(json, root, "name", scene.name);
-  read(json, root, "particles", scene.particles);
-  read(json, root, "arrival_time", scene.arrival_time);
-  read(json, root, "gravity", scene.gravity);
+  visit_first(scene, FieldReader{json, root});
   read(json, root, "initial", scene.initial);
   read(json, root, "target", scene.target);
-  if (json.contains("cloth")) {
-    const Json& cloth = json["cloth"];
-    const Field at = root.child("cloth");
-    require_known_fields(cloth, at, known_cloth);
-    read(cloth, at, "mass", scene.cloth.mass);
-    read(cloth, at, "air_drag", scene.cloth.air_drag);
-    read(cloth, at, "stretch_stiffness", scene.cloth.stretch_stiffness);
-    read(cloth, at, "stretch_damping", scene.cloth.stretch_damping);
-    read(cloth, at, "hinge_stiffness", scene.cloth.hinge_stiffness);
-    read(cloth, at, "hinge_damping", scene.cloth.hinge_damping);
-  }
-  read(json, root, "launch", launch_words, scene.launch);
-  read(json, root, "reference", reference_words, scene.reference);
-  read(json, root, "arrival", arrival_words, scene.arrival);
-  read(json, root, "damping_ratio", scene.damping_ratio);
-  read(json, root, "target_length", target_length_words, scene.target_length);
-  if (json.contains("time_step")) {
-    scene.time_step = number(json["time_step"], root.child("time_step"));
-  }
-  read(json, root, "frames_per_second", scene.frames_per_second);
-
+  read_material(json, root, scene.cloth);
+  visit_last(scene, FieldReader{json, root});
   validate(scene, source);
   return scene;
 }
 
-ChainScene read_scene(const std::string& path) {
+/// Starts from the values of the material that the scene names.
+void read_named_material(const Json& json, const Field& root, SheetMaterial& cloth) {
+  if (!json.contains("material")) return;
+  std::string name;
+  read(json, root, "material", name);
+  if (const NamedMaterial* const found = find_material(name)) {
+    cloth = found->cloth;
+  } else {
+    root.child("material")
+        .refuse(fmt::format("{} is not one of {}", shown(json["material"]), material_names()));
+  }
+}
+
+SheetInput read_sheet(const Json& json, const std::string& source) {
+  const Field root{source, ""};
+  require_fields<SheetScene>(json, root);
+  std::string initial, target;
+  read(json, root, "initial", initial);
+  read(json, root, "target", target);
+  SheetScene scene;
+  scene.name = std::filesystem::path(source).stem().string();
+  visit_first(scene, FieldReader{json, root});
+  read_named_material(json, root, scene.cloth);
+  read_material(json, root, scene.cloth);
+  visit_last(scene, FieldReader{json, root});
+  const std::filesystem::path folder = std::filesystem::path(source).parent_path();
+  return with_meshes(std::move(scene), (folder / initial).string(), (folder / target).string(),
+                     source);
+}
+
+std::string text_of(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
     throw InputError(fmt::format("{}: /: is a directory, not a scene file", path));
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError(fmt::format("{}: /: cannot be opened for reading", path));
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   if (file.bad()) throw InputError(fmt::format("{}: /: cannot be read", path));
-  return parse_scene(text, path);
+  return text;
+}
+
+}  // namespace
+
+AnyScene read_scene(const std::string& path) {
+  const Json json = parse_json(text_of(path), path);
+  if (is_sheet(json)) return read_sheet(json, path);
+  return read_chain(json, path);
+}
+
+ChainScene parse_scene(const std::string& text, const std::string& source) {
+  const Json json = parse_json(text, source);
+  if (is_sheet(json)) {
+    const Field at = Field{source, ""}.child("initial");
+    at.refuse("a mesh file is not read here; give the points of a chain");
+  }
+  return read_chain(json, source);
 }
 
 std::string to_json(const ChainScene& scene) {
-  Json json;
-  json["nuno_scene"] = 1;
-  json["name"] = scene.name;
-  json["particles"] = scene.particles;
-  json["arrival_time"] = scene.arrival_time;
-  json["gravity"] = scene.gravity;
+  Json json = {{"nuno_scene", 1}};
+  const FieldWriter write{json};
+  visit_first(scene, write);
   json["initial"] = to_json(scene.initial);
   json["target"] = to_json(scene.target);
-  json["cloth"] = {{"mass", scene.cloth.mass},
-                   {"air_drag", scene.cloth.air_drag},
-                   {"stretch_stiffness", scene.cloth.stretch_stiffness},
-                   {"stretch_damping", scene.cloth.stretch_damping},
-                   {"hinge_stiffness", scene.cloth.hinge_stiffness},
-                   {"hinge_damping", scene.cloth.hinge_damping}};
-  json["launch"] = word_for(launch_words, scene.launch);
-  json["reference"] = word_for(reference_words, scene.reference);
-  json["arrival"] = word_for(arrival_words, scene.arrival);
-  json["damping_ratio"] = scene.damping_ratio;
-  json["target_length"] = word_for(target_length_words, scene.target_length);
-  if (scene.time_step) json["time_step"] = *scene.time_step;
-  json["frames_per_second"] = scene.frames_per_second;
+  visit_material(scene.cloth, FieldWriter{json["cloth"]});
+  visit_last(scene, write);
   return json.dump(1);
+}
+
+SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
+                       const std::string& source) {
+  Mesh start = read_mesh(initial);
+  const Mesh end = read_mesh(target);
+  require_same_faces(start, initial, end, target);
+  cut_polygons(start);
+  scene.initial = start.vertices;
+  scene.target = end.vertices;
+  scene.faces = start.faces;
+  validate(scene, source);
+  return {std::move(scene), std::move(start)};
 }
 
 }  // namespace nuno

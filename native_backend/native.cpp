@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "chain_kernel.h"
+#include "sheet_backend.h"
 
 #include <algorithm>
 #include <cassert>
@@ -318,6 +319,7 @@ StableStep stable_step(const Chain& chain) {
 }  // namespace
 
 std::unique_ptr<Backend> make_backend(const Problem& problem) {
+  if (problem.is_sheet()) return make_sheet_backend(problem);
   // A quarter of the stable step leaves room for hinges that stiffen where segments are compressed:
   // at half of it, one of the 64 scenes of the library's family diverges at some gains, here none.
   // 1/800 of the flight keeps E(α) within 5e-4 of the cloth's length on the reference scenes.

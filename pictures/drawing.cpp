@@ -96,7 +96,7 @@ std::string style_sheet() {
       ".figure .thick{stroke-width:2.5}.figure .thin{stroke-width:1}.figure .bold{stroke-width:5}";
   css += ".figure .dots{stroke-dasharray:.1 4}.figure .dashes{stroke-dasharray:5 4}";
   css += ".figure .short{stroke-dasharray:3 3}.figure .long{stroke-dasharray:9 4}";
-  css += ".figure .ghost{opacity:.35}";
+  css += ".figure .ghost{opacity:.35}.figure .mesh{stroke-width:3}";
   css += ".figure .dot{stroke-width:1.25;" + paint("stroke", "paper") + paint("fill", "ink") + "}";
   for (const char* series : {"a", "b", "c", "d"}) {
     css += fmt::format(".figure .line.{}{{{}}}", series, paint("stroke", series));

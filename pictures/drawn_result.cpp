@@ -4,9 +4,12 @@
 
 #include <nuno/scene.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 namespace nuno {
 namespace {
@@ -66,19 +69,28 @@ struct Field {
     if (!value.is_string()) refuse("is not a string");
     return value.get<std::string>();
   }
-  /// A shape of `particles` points; of any number of them if that is 0.
-  Points points(Index particles) const {
+  Index index(Index count) const {
+    const double result = number();
+    if (!(result >= 0 && result < static_cast<double>(count) && result == std::floor(result))) {
+      refuse(fmt::format("is not a whole number within 0 … {}", count - 1));
+    }
+    return static_cast<Index>(result);
+  }
+  /// A shape of `particles` points of `rows` numbers; of any number of them if `particles` is 0.
+  Points points(Index particles, Index rows) const {
     list(2);
     const auto count = static_cast<Index>(value.size());
     if (particles > 0 && count != particles) {
       throw InputError(fmt::format("{}: {}: {} points are not {}, as many as in /target", path,
                                    pointer, count, particles));
     }
-    Points result(2, count);
+    Points result(rows, count);
     for (Index i = 0; i < count; ++i) {
       const Field point = item(static_cast<std::size_t>(i));
-      if (!point.value.is_array() || point.value.size() != 2) point.refuse("is not a point [x, y]");
-      for (Index k = 0; k < 2; ++k) {
+      if (!point.value.is_array() || point.value.size() != static_cast<std::size_t>(rows)) {
+        point.refuse(rows == 2 ? "is not a point [x, y]" : "is not a point [x, y, z]");
+      }
+      for (Index k = 0; k < rows; ++k) {
         result(k, i) = point.item(static_cast<std::size_t>(k)).number();
       }
     }
@@ -125,6 +137,32 @@ void require_extent(const std::string& path, const Points& target) {
   }
 }
 
+/// The edges around a sheet's faces, some of them twice; a chain's segments.
+Edges edges_of(const Field& root, bool is_sheet, Index particles) {
+  std::vector<std::pair<Index, Index>> ends;
+  if (is_sheet) {
+    const Field faces = root.child("faces").list(1);
+    for (std::size_t f = 0; f < faces.value.size(); ++f) {
+      const Field face = faces.item(f).list(3);
+      for (std::size_t k = 0, count = face.value.size(); k < count; ++k) {
+        const Index here = face.item(k).index(particles);
+        ends.push_back(std::minmax({here, face.item((k + 1) % count).index(particles)}));
+      }
+    }
+    std::ranges::sort(ends);
+    const auto repeated = std::ranges::unique(ends);
+    ends.erase(repeated.begin(), repeated.end());
+  } else {
+    for (Index i = 0; i + 1 < particles; ++i) ends.emplace_back(i, i + 1);
+  }
+  Edges edges(2, static_cast<Index>(ends.size()));
+  for (Index e = 0; e < edges.cols(); ++e) {
+    edges(0, e) = ends[static_cast<std::size_t>(e)].first;
+    edges(1, e) = ends[static_cast<std::size_t>(e)].second;
+  }
+  return edges;
+}
+
 }  // namespace
 
 bool is_scene_file(const std::string& path) {
@@ -144,7 +182,9 @@ figures::Flight read_result(const std::string& path) {
   flight.scene = root.child("scene").text();
   flight.backend = root.child("backend").text();
   flight.gain = root.child("alpha").not_negative();
-  const Field cloth_length = root.child("cloth_length");
+  const bool is_sheet = json.contains("kind") && json["kind"] == "sheet";
+  const Index rows = is_sheet ? 3 : 2;
+  const Field cloth_length = root.child(is_sheet ? "size" : "cloth_length");
   flight.cloth_length = cloth_length.positive();
   if (!(flight.cloth_length >= smallest_scene_number)) {
     cloth_length.refuse(fmt::format("is not >= {}", smallest_scene_number));
@@ -152,10 +192,11 @@ figures::Flight read_result(const std::string& path) {
   const Field error = root.child("error");
   flight.error = error.child("mean").not_negative();
   flight.max_error = error.child("max").not_negative();
-  flight.target = root.child("target").points(0);
+  flight.target = root.child("target").points(0, rows);
   require_extent(path, flight.target);
   const Index particles = flight.target.cols();
-  (void)root.child("final").points(particles);
+  flight.stroke = figures::stroke_along(edges_of(root, is_sheet, particles));
+  (void)root.child("final").points(particles, rows);
 
   const Field frames = root.child("frames");
   const Field times = frames.child("times").list(2);
@@ -170,7 +211,7 @@ figures::Flight read_result(const std::string& path) {
       times.item(i).refuse("is not later than the frame before");
     }
     flight.times.push_back(time);
-    flight.positions.push_back(positions.item(i).points(particles));
+    flight.positions.push_back(positions.item(i).points(particles, rows));
   }
   return flight;
 }

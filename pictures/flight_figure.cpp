@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace nuno::figures {
 namespace {
@@ -13,11 +14,17 @@ namespace {
 constexpr double width = 800;
 constexpr double margin = 0.06;  // of the data, around it
 
+/// Of a sheet: from the front, a little from the right and from above.
+constexpr double azimuth = 25 * std::numbers::pi / 180, elevation = 20 * std::numbers::pi / 180;
+
 struct Extent {
   double left = std::numeric_limits<double>::infinity(), right = -left;
   double bottom = left, top = -left;
+  bool in_space = false;
 
-  void add(const Points& points) {
+  void add(const Points& shape) {
+    in_space = in_space || shape.rows() == 3;
+    const Points points = seen(shape);
     left = std::min(left, points.row(0).minCoeff());
     right = std::max(right, points.row(0).maxCoeff());
     bottom = std::min(bottom, points.row(1).minCoeff());
@@ -30,14 +37,24 @@ struct Extent {
     return result;
   }
   double aspect() const { return (top - bottom) / (right - left); }
-  Axis x() const { return {"x [m]", left, right}; }
-  Axis y() const { return {"y [m]", bottom, top}; }
+  Axis x() const { return {in_space ? "across [m]" : "x [m]", left, right}; }
+  Axis y() const { return {in_space ? "up [m]" : "y [m]", bottom, top}; }
 };
 
+/// Where the particles are on the plot.
 std::vector<Vec> mapped(const Plot& plot, const Points& points) {
+  const Points on_paper = seen(points);
   std::vector<Vec> result;
-  for (Index i = 0; i < points.cols(); ++i) result.push_back(plot.at(points(0, i), points(1, i)));
+  for (const auto point : on_paper.colwise()) result.push_back(plot.at(point.x(), point.y()));
   return result;
+}
+
+/// The cloth's line on the plot.
+std::vector<Vec> line_of(const Plot& plot, const Flight& flight, const Points& pose) {
+  const std::vector<Vec> places = mapped(plot, pose);
+  std::vector<Vec> line;
+  for (const Index i : flight.stroke) line.push_back(places[static_cast<std::size_t>(i)]);
+  return line;
 }
 
 Extent extent_of(const std::vector<Flight>& flights) {
@@ -52,8 +69,7 @@ Extent extent_of(const std::vector<Flight>& flights) {
 std::vector<Vec> centroid_path(const Plot& plot, const Flight& flight) {
   std::vector<Vec> path;
   for (const Points& positions : flight.positions) {
-    const Vector center = centroid(positions);
-    path.push_back(plot.at(center(0), center(1)));
+    path.push_back(mapped(plot, centroid(positions)).front());
   }
   return path;
 }
@@ -75,6 +91,14 @@ std::size_t dashed(const std::vector<Flight>& flights, const FlightFigure& optio
 
 std::string_view final_width(const FlightFigure& options) {
   return options.plain ? "bold" : "thick";
+}
+
+/// A mesh is drawn by many lines: thin ones.
+std::string_view weight(const Flight& flight, std::string_view of_chain) {
+  return flight.target.rows() == 3 ? "thin" : of_chain;
+}
+std::string_view band(const Flight& flight) {
+  return flight.target.rows() == 3 ? "band mesh" : "band";
 }
 
 std::string style_of(std::size_t i, std::size_t count, std::string_view more) {
@@ -130,13 +154,12 @@ void draw_ghosts(Drawing& drawing, const Plot& plot, const std::vector<Flight>& 
     for (int k = 1; k <= options.ghosts; ++k) {
       const double time = flight.times.back() * k / (options.ghosts + 1);
       const Points pose = positions_at(flight, time);
-      drawing.line(mapped(plot, pose), style_of(i, dashed(flights, options), "ghost"));
+      drawing.line(line_of(plot, flight, pose), style_of(i, dashed(flights, options), "ghost"));
       if (options.plain) continue;
-      const Vector center = centroid(pose);
-      const Vec at = plot.at(center(0), center(1));
+      const Vec at = mapped(plot, centroid(pose)).front();
       drawing.marker(Marker::circle, at, 4, "soft", Weight::light);
       if (i == 0 && flights.size() == 1) {
-        const Vec end = plot.at(pose(0, pose.cols() - 1), pose(1, pose.cols() - 1));
+        const Vec end = mapped(plot, pose.rightCols(1)).front();
         drawing.label(end, fmt::format("{:.2f} s", time), "muted", plot.frame());
       }
     }
@@ -146,11 +169,12 @@ void draw_ghosts(Drawing& drawing, const Plot& plot, const std::vector<Flight>& 
 void draw_targets(Drawing& drawing, const Plot& plot, const std::vector<Flight>& flights) {
   for (std::size_t i = 0; i < flights.size(); ++i) {
     if (i > 0 && same_target(flights[i - 1], flights[i])) continue;
-    drawing.line(mapped(plot, flights[i].target), "band");
+    drawing.line(line_of(plot, flights[i], flights[i].target), band(flights[i]));
   }
 }
 
 void draw_particles(Drawing& drawing, const Plot& plot, const Points& pose, std::size_t i) {
+  if (pose.rows() == 3) return;  // a mesh shows them by itself
   const std::vector<Vec> places = mapped(plot, pose);
   double apart = std::numeric_limits<double>::infinity();
   for (std::size_t k = 1; k < places.size(); ++k) {
@@ -182,7 +206,8 @@ void draw_arrival(Drawing& drawing, const Box& frame, const std::vector<Flight>&
     for (std::size_t k = 0; k < places.size(); ++k) {
       drawing.line(places[k], wanted[k], "hair", Weight::none);
     }
-    drawing.line(places, style_of(i, flights.size(), "thick"));
+    drawing.line(line_of(plot, flights[i], final),
+                 style_of(i, flights.size(), weight(flights[i], "thick")));
     if (flights.size() > 1) continue;  // the dots of one would hide the other
     draw_particles(drawing, plot, final, i);
     Index worst = 0;
@@ -200,7 +225,9 @@ void draw_arrival(Drawing& drawing, const Box& frame, const std::vector<Flight>&
 }  // namespace
 
 std::string engine_name(std::string_view backend) {
-  return backend == "box2d" ? "Box2D" : std::string(backend);
+  if (backend == "box2d") return "Box2D";
+  if (backend == "bullet") return "Bullet";
+  return std::string(backend);
 }
 
 Flight make_flight(const std::string& scene, const Backend& backend, const Rollout& rollout) {
@@ -211,8 +238,45 @@ Flight make_flight(const std::string& scene, const Backend& backend, const Rollo
           .error = rollout.error.mean,
           .max_error = rollout.error.max,
           .target = backend.problem().target,
+          .stroke = stroke_along(backend.cloth().edges),
           .times = rollout.frame_times,
           .positions = rollout.frame_positions};
+}
+
+std::vector<Index> stroke_along(const Edges& edges) {
+  struct End {
+    Index other, edge;
+  };
+  std::vector<std::vector<End>> ends(static_cast<std::size_t>(edges.maxCoeff() + 1));
+  for (Index e = edges.cols(); e-- > 0;) {  // taken from the back
+    ends[static_cast<std::size_t>(edges(0, e))].push_back({edges(1, e), e});
+    ends[static_cast<std::size_t>(edges(1, e))].push_back({edges(0, e), e});
+  }
+  std::vector<bool> drawn(static_cast<std::size_t>(edges.cols()), false);
+  std::vector<Index> stroke = {0}, way = {0};
+  for (Index left = edges.cols(); left > 0;) {
+    auto& here = ends[static_cast<std::size_t>(way.back())];
+    while (!here.empty() && drawn[static_cast<std::size_t>(here.back().edge)]) here.pop_back();
+    if (here.empty() && way.size() == 1) break;  // what is left hangs on nothing drawn
+    if (here.empty()) {
+      way.pop_back();  // back along the line, to where one is left
+    } else {
+      drawn[static_cast<std::size_t>(here.back().edge)] = true;
+      way.push_back(here.back().other);
+      --left;
+    }
+    stroke.push_back(way.back());
+  }
+  return stroke;
+}
+
+Points seen(const Points& points) {
+  if (points.rows() == 2) return points;
+  Eigen::Matrix<double, 2, 3> view;
+  view << std::cos(azimuth), 0, -std::sin(azimuth),               //
+      -std::sin(azimuth) * std::sin(elevation), std::cos(elevation),
+      -std::cos(azimuth) * std::sin(elevation);
+  return view * points;
 }
 
 Points positions_at(const Flight& flight, double time) {
@@ -276,21 +340,22 @@ Drawing draw_flights(const std::vector<Flight>& flights, const FlightFigure& opt
   draw_targets(drawing, plot, flights);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     if (i > 0 && same_initial(flights[i - 1], flights[i])) continue;
-    drawing.line(mapped(plot, flights[i].positions.front()), "soft thick");
+    drawing.line(line_of(plot, flights[i], flights[i].positions.front()),
+                 fmt::format("soft {}", weight(flights[i], "thick")));
   }
   if (!options.plain) {
     for (const Flight& flight : flights) drawing.line(centroid_path(plot, flight), "soft dots");
   }
   draw_ghosts(drawing, plot, flights, options);
   for (std::size_t i = 0; i < flights.size(); ++i) {
-    drawing.line(mapped(plot, flights[i].positions.back()),
-                 style_of(i, dashed(flights, options), final_width(options)));
+    drawing.line(line_of(plot, flights[i], flights[i].positions.back()),
+                 style_of(i, dashed(flights, options), weight(flights[i], final_width(options))));
   }
   if (options.plain) return drawing;
 
   const Flight& first = flights.front();
   const auto place = [&](const Points& points, Index i) {
-    return plot.at(points(0, i), points(1, i));
+    return mapped(plot, points.col(i)).front();
   };
   const Index middle = first.target.cols() / 2;
   drawing.label(place(first.positions.front(), middle), "initial", "strong", frame);
@@ -330,7 +395,8 @@ Stage make_stage(const std::vector<Flight>& flights, const FlightFigure& options
     if (!options.plain) {
       stage.drawing.line(centroid_path(stage.plot, flight), "soft dots", Weight::light);
     }
-    stage.drawing.line(mapped(stage.plot, flight.positions.front()), "soft thin", Weight::light);
+    stage.drawing.line(line_of(stage.plot, flight, flight.positions.front()), "soft thin",
+                       Weight::light);
   }
   return stage;
 }
@@ -346,7 +412,8 @@ Drawing draw_moment(const std::vector<Flight>& flights, double time, const Fligh
   const double end = last_arrival(flights);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const Points pose = positions_at(flights[i], time);
-    drawing.line(mapped(plot, pose), style_of(i, dashed(flights, options), final_width(options)));
+    drawing.line(line_of(plot, flights[i], pose),
+                 style_of(i, dashed(flights, options), weight(flights[i], final_width(options))));
     if (!options.plain && flights.size() == 1) draw_particles(drawing, plot, pose, i);
   }
   if (!options.plain) {
@@ -373,12 +440,13 @@ Drawing draw_motion(const std::vector<Flight>& flights, double speed, const Flig
     std::string values;
     std::string last;
     for (int k = 0; k <= frames; ++k) {
-      std::vector<Vec> pose = mapped(plot, positions_at(flights[i], end * k / frames));
+      std::vector<Vec> pose = line_of(plot, flights[i], positions_at(flights[i], end * k / frames));
       for (Vec& at : pose) at = {std::round(10 * at.x) / 10, std::round(10 * at.y) / 10};
       last = svg_points(pose);
       values += last + ";";
     }
-    const std::string style = style_of(i, dashed(flights, options), final_width(options));
+    const std::string style =
+        style_of(i, dashed(flights, options), weight(flights[i], final_width(options)));
     drawing.raw(fmt::format("<polyline class=\"line {} still\" points=\"{}\"/>\n", style, last));
     drawing.raw(fmt::format(
         "<polyline class=\"line {} moving\" points=\"{}\"><animate attributeName=\"points\" "

@@ -19,10 +19,18 @@ struct Flight {
   double cloth_length = 0;        ///< L [m]
   double error = 0;               ///< mean, at arrival [m]
   double max_error = 0;           ///< of the worst particle [m]
-  Points target;                  ///< [2 × N], m
+  Points target;                  ///< [d × N], m; d = 2 of a chain, 3 of a sheet
+  std::vector<Index> stroke;      ///< particles in the order in which a line draws the cloth
   std::vector<double> times;      ///< of the frames, ascending, the last at arrival [s]
-  std::vector<Points> positions;  ///< [2 × N] each, m
+  std::vector<Points> positions;  ///< [d × N] each, m
 };
+
+/// One line along every edge of a connected cloth, from particle 0 on; where it cannot go on it
+/// goes back over itself.
+std::vector<Index> stroke_along(const Edges& edges);
+
+/// Points [d × any] as a picture shows them [2 × any], m: those in space from a fixed side.
+Points seen(const Points& points);
 
 Flight make_flight(const std::string& scene, const Backend& backend, const Rollout& rollout);
 

@@ -28,20 +28,22 @@ using namespace figures;
 using Json = nlohmann::ordered_json;
 
 // The page's size: what an eye can follow on a screen, and no more.
-constexpr double most_frames = 60;
-constexpr Index most_particles = 64;
+constexpr double most_frames = 60, most_frames_of_sheet = 30;
+constexpr Index most_particles = 64;  // of a chain
 constexpr double most_positions = 1e7;  // in memory, per flight
 constexpr double position_unit = 1e-4;  // of L
-constexpr std::size_t pareto_to_pick = 8;
+constexpr std::size_t pareto_to_pick = 8, pareto_to_pick_of_sheet = 2;
 
 double frames_per_second(const Problem& problem) {
   const double affordable =
       std::max(1.0, most_positions / static_cast<double>(problem.cloth().particles()));
-  return std::min(most_frames, affordable) / problem.arrival_time;
+  const double readable = problem.is_sheet() ? most_frames_of_sheet : most_frames;
+  return std::min(readable, affordable) / problem.arrival_time;
 }
 
-/// Evenly chosen columns, the first and the last among them.
+/// Evenly chosen columns, the first and the last among them. A sheet stays as it is.
 Points thinned(const Points& points) {
+  if (points.rows() == 3) return points;
   const Index count = std::min(points.cols(), most_particles);
   Points result(points.rows(), count);
   for (Index i = 0; i < count; ++i) {
@@ -53,7 +55,7 @@ Points thinned(const Points& points) {
 Json rounded(const Points& points, double unit) {
   Json result = Json::array();
   for (Index i = 0; i < points.cols(); ++i) {
-    for (Index k = 0; k < 2; ++k) result.push_back(std::llround(points(k, i) / unit));
+    for (Index k = 0; k < points.rows(); ++k) result.push_back(std::llround(points(k, i) / unit));
   }
   return result;
 }
@@ -62,12 +64,12 @@ Json rounded(const Points& points, double unit) {
 /// and small numbers are short.
 Json packed(const Flight& flight, double unit) {
   Json result = Json::array();
-  const auto size = 2 * static_cast<std::size_t>(flight.target.cols());
+  const auto size = static_cast<std::size_t>(flight.target.size());
   std::vector<long long> last(size, 0), last_change(size, 0);
   for (const Points& positions : flight.positions) {
     for (Index i = 0; i < positions.cols(); ++i) {
-      for (Index k = 0; k < 2; ++k) {
-        const auto at = static_cast<std::size_t>(2 * i + k);
+      for (Index k = 0; k < positions.rows(); ++k) {
+        const auto at = static_cast<std::size_t>(positions.rows() * i + k);
         const long long value = std::llround(positions(k, i) / unit);
         const long long change = value - last[at];
         result.push_back(change - last_change[at]);
@@ -110,6 +112,8 @@ Json to_json(const ReportScene& scene) {
   for (const double time : first.times) times.push_back(std::round(1e6 * time) / 1e6);
   return {{"name", scene.comparison.scene},
           {"particles", first.target.cols()},
+          {"dimension", first.target.rows()},
+          {"stroke", first.stroke},
           {"length", first.cloth_length},
           {"unit", unit},
           {"times", times},
@@ -273,8 +277,9 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
   std::vector<Wish> wishes = {{"each at its own best", best, other_best}};
   if (differs(other_best)) {
     wishes.push_back({fmt::format("both at native’s best, {}", shown(best)), best, best});
-    wishes.push_back(
-        {fmt::format("both at Box2D’s best, {}", shown(other_best)), other_best, other_best});
+    wishes.push_back({fmt::format("both at {}’s best, {}", engine_name(comparison.rows[1].backend),
+                                  shown(other_best)),
+                      other_best, other_best});
   }
   const OptimizeSummary descent = steepest_descent(objective(first));
   scene.descent = descent.history;
@@ -283,7 +288,8 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
         {fmt::format("where descent ends, {}", shown(descent.gain)), descent.gain, descent.gain});
   }
   wishes.push_back({"launch only, 0", 0, 0});
-  for (const ParetoPoint& point : spread_along(pareto_front_curve(comparison, 0), pareto_to_pick)) {
+  const std::size_t picks = problem.is_sheet() ? pareto_to_pick_of_sheet : pareto_to_pick;
+  for (const ParetoPoint& point : spread_along(pareto_front_curve(comparison, 0), picks)) {
     if (!differs(point.gain)) continue;
     wishes.push_back(
         {fmt::format("α = {} N/m: error {} %, effort {}", shown(point.gain),
@@ -306,6 +312,10 @@ ReportScene make_report_scene(const Comparison& comparison, const Backend& first
       Flight flight = make_flight(comparison.scene, i == 0 ? first : second, rollouts[i]);
       flight.target = thinned(flight.target);
       for (Points& positions : flight.positions) positions = thinned(positions);
+      // A chain's line goes from one of those left to the next.
+      if (flight.target.rows() == 2) {
+        flight.stroke.resize(static_cast<std::size_t>(flight.target.cols()));
+      }
       choice.flights.push_back(std::move(flight));
       choice.efforts.push_back(rollouts[i].control_effort);
     }

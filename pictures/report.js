@@ -44,7 +44,10 @@ class SceneView {
     this.root = root;
     this.data = data;
     this.find = (name) => root.querySelector(`[data-part="${name}"]`);
-    this.size = 2 * data.particles;
+    this.size = data.dimension * data.particles;
+    // From where a sheet is seen: as in the figures, until it is turned.
+    this.azimuth = (25 * Math.PI) / 180;
+    this.elevation = (20 * Math.PI) / 180;
     this.target = Float64Array.from(data.target, (value) => value * data.unit);
     this.choice = 0;
     this.time = data.times[data.times.length - 1];
@@ -97,10 +100,10 @@ class SceneView {
     this.most = { apart: -1, time: 0, particle: 0 };
     this.apart = first.map((pose, k) => {
       let sum = 0;
-      for (let i = 0; i < this.size; i += 2) {
-        const d = Math.hypot(pose[i] - second[k][i], pose[i + 1] - second[k][i + 1]);
+      for (let i = 0; i < this.data.particles; ++i) {
+        const d = this.distance(pose, second[k], i);
         sum += d;
-        if (d > this.most.apart) this.most = { apart: d, time: this.data.times[k], particle: i / 2 };
+        if (d > this.most.apart) this.most = { apart: d, time: this.data.times[k], particle: i };
       }
       return (100 * sum) / this.data.particles / this.data.length;
     });
@@ -143,11 +146,13 @@ class SceneView {
   }
 
   draw(width) {
+    this.width = width;
     const { data } = this;
     const stage = this.find('stage');
     stage.replaceChildren();
     let [left, right, bottom, top] = [Infinity, -Infinity, Infinity, -Infinity];
-    const add = (pose) => {
+    const add = (shape) => {
+      const pose = this.seen(shape);
       for (let i = 0; i < pose.length; i += 2) {
         left = Math.min(left, pose[i]);
         right = Math.max(right, pose[i]);
@@ -180,6 +185,8 @@ class SceneView {
       'aria-label': `${data.name}: both engines' cloths over the target`,
     });
     this.svg = svg;
+    const inSpace = data.dimension === 3;
+    if (inSpace) this.makeTurnable(svg);
     for (const [value, label] of roundTicks(left, left + scale * frame.width, frame.width / 70)) {
       const x = this.plot.x(value);
       element(svg, 'line', { class: 'line grid', x1: x, x2: x, y1: frame.top, y2: frame.top + frame.height });
@@ -190,20 +197,88 @@ class SceneView {
       element(svg, 'line', { class: 'line grid', x1: frame.left, x2: frame.left + frame.width, y1: y, y2: y });
       element(svg, 'text', { class: 'muted', x: frame.left - 6, y: y + 4, 'text-anchor': 'end' }, label);
     }
-    element(svg, 'text', { x: frame.left + frame.width / 2, y: height - 4, 'text-anchor': 'middle' }, 'x [m]');
-    element(svg, 'text', { transform: `translate(11 ${frame.top + frame.height / 2}) rotate(-90)`, 'text-anchor': 'middle' }, 'y [m]');
-    element(svg, 'polyline', { class: 'line band', points: this.points(this.target) });
+    element(svg, 'text', { x: frame.left + frame.width / 2, y: height - 4, 'text-anchor': 'middle' }, inSpace ? 'across [m]' : 'x [m]');
+    element(svg, 'text', { transform: `translate(11 ${frame.top + frame.height / 2}) rotate(-90)`, 'text-anchor': 'middle' }, inSpace ? 'up [m]' : 'y [m]');
+    element(svg, 'polyline', {
+      class: `line band ${inSpace ? 'mesh' : ''}`, points: this.points(this.target),
+    });
     this.over = element(svg, 'g', {});
     this.drawOver();
   }
 
-  points(pose) {
+  /// A pose as the page shows it, x and y of each particle: a sheet from where it is seen.
+  seen(pose) {
+    if (this.data.dimension === 2) return pose;
+    const [ca, sa] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
+    const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
+    const flat = new Float64Array((2 * pose.length) / 3);
+    for (let i = 0, k = 0; i < pose.length; i += 3) {
+      flat[k++] = ca * pose[i] - sa * pose[i + 2];
+      flat[k++] = ce * pose[i + 1] - se * (sa * pose[i] + ca * pose[i + 2]);
+    }
+    return flat;
+  }
+
+  /// Turned by dragging or by the arrow keys.
+  makeTurnable(svg) {
+    svg.classList.add('turnable');
+    svg.setAttribute('tabindex', '0');
+    svg.setAttribute('aria-label', `${svg.getAttribute('aria-label')}; drag it or use the arrow keys to turn it`);
+    svg.addEventListener('keydown', (event) => {
+      const turn = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      if (!turn) return;
+      event.preventDefault();
+      this.turn(0.1 * turn[0], 0.1 * turn[1]);
+      this.svg.focus({ preventScroll: true });
+    });
+    svg.addEventListener('pointerdown', (event) => {
+      event.preventDefault();
+      let [x, y] = [event.clientX, event.clientY];
+      const stop = new AbortController();
+      addEventListener('pointermove', (move) => {
+        this.turn(0.008 * (x - move.clientX), 0.008 * (move.clientY - y));
+        [x, y] = [move.clientX, move.clientY];
+      }, { signal: stop.signal });
+      for (const end of ['pointerup', 'pointercancel']) {
+        addEventListener(end, () => stop.abort(), { signal: stop.signal });
+      }
+    });
+  }
+
+  turn(azimuth, elevation) {
+    this.azimuth += azimuth;
+    this.elevation = Math.max(-1.5, Math.min(1.5, this.elevation + elevation));
+    this.draw(this.width);
+  }
+
+  distance(a, b, particle) {
+    let sum = 0;
+    const first = this.data.dimension * particle;
+    for (let i = first; i < first + this.data.dimension; ++i) sum += (a[i] - b[i]) ** 2;
+    return Math.sqrt(sum);
+  }
+
+  meanDistance(a, b) {
+    let sum = 0;
+    for (let i = 0; i < this.data.particles; ++i) sum += this.distance(a, b, i);
+    return sum / this.data.particles;
+  }
+
+  /// Of x and y of one point after another.
+  line(flat) {
     const { x, y } = this.plot;
     let text = '';
-    for (let i = 0; i < pose.length; i += 2) {
-      text += `${x(pose[i]).toFixed(1)},${y(pose[i + 1]).toFixed(1)} `;
+    for (let i = 0; i < flat.length; i += 2) {
+      text += `${x(flat[i]).toFixed(1)},${y(flat[i + 1]).toFixed(1)} `;
     }
     return text;
+  }
+
+  /// The cloth's line.
+  points(pose) {
+    const flat = this.seen(pose);
+    const along = this.data.stroke.flatMap((i) => [flat[2 * i], flat[2 * i + 1]]);
+    return this.line(along);
   }
 
   pose(engine, time) {
@@ -220,12 +295,13 @@ class SceneView {
     const { over, data } = this;
     over.replaceChildren();
     element(over, 'polyline', { class: 'line soft thin', points: this.points(this.frames(0)[0]) });
-    const path = this.frames(0).map((pose) => {
+    const path = this.frames(0).flatMap((pose) => {
+      const flat = this.seen(pose);
       let [x, y] = [0, 0];
-      for (let i = 0; i < pose.length; i += 2) [x, y] = [x + pose[i], y + pose[i + 1]];
+      for (let i = 0; i < flat.length; i += 2) [x, y] = [x + flat[i], y + flat[i + 1]];
       return [x / data.particles, y / data.particles];
     });
-    element(over, 'polyline', { class: 'line soft dots', points: this.points(path.flat()) });
+    element(over, 'polyline', { class: 'line soft dots', points: this.line(path) });
     for (const engine of [0, 1]) {
       for (let k = 1; k <= 4; ++k) {
         element(over, 'polyline', {
@@ -235,7 +311,9 @@ class SceneView {
       }
     }
     this.cloths = [0, 1].map((engine) =>
-      element(over, 'polyline', { class: `line thick ${engine ? 'b dashes' : 'a'}` }));
+      element(over, 'polyline', {
+        class: `line ${data.dimension === 3 ? 'thin' : 'thick'} ${engine ? 'b dashes' : 'a'}`,
+      }));
     this.ring = element(over, 'circle', { class: 'line', r: 11 });
     this.drawApart();
     this.show(this.time);
@@ -282,19 +360,12 @@ class SceneView {
     const poses = [this.pose(0, time), this.pose(1, time)];
     const errors = poses.map((pose, engine) => {
       if (arrived) return 100 * data.choices[this.choice].errors[engine];
-      let sum = 0;
-      for (let i = 0; i < this.size; i += 2) {
-        sum += Math.hypot(pose[i] - this.target[i], pose[i + 1] - this.target[i + 1]);
-      }
-      return (100 * sum) / data.particles / data.length;
+      return (100 * this.meanDistance(pose, this.target)) / data.length;
     });
-    let sum = 0;
-    for (let i = 0; i < this.size; i += 2) {
-      sum += Math.hypot(poses[0][i] - poses[1][i], poses[0][i + 1] - poses[1][i + 1]);
-    }
+    const apart = (100 * this.meanDistance(poses[0], poses[1])) / data.length;
     this.find('error-0').textContent = percent(errors[0]);
     this.find('error-1').textContent = percent(errors[1]);
-    this.find('apart-now').textContent = percent((100 * sum) / data.particles / data.length);
+    this.find('apart-now').textContent = percent(apart);
     this.find('what').textContent = arrived ? 'error' : 'to the target';
     this.find('what-1').textContent = arrived ? 'error' : 'to the target';
     if (!this.plot) return;
@@ -303,9 +374,10 @@ class SceneView {
     const step = 0.5 / 60 + this.end / data.times.length;
     const here = Math.abs(time - this.most.time) <= step;
     this.ring.style.display = here ? '' : 'none';
+    const [first, second] = poses.map((pose) => this.seen(pose));
     const i = 2 * this.most.particle;
-    this.ring.setAttribute('cx', this.plot.x((poses[0][i] + poses[1][i]) / 2));
-    this.ring.setAttribute('cy', this.plot.y((poses[0][i + 1] + poses[1][i + 1]) / 2));
+    this.ring.setAttribute('cx', this.plot.x((first[i] + second[i]) / 2));
+    this.ring.setAttribute('cy', this.plot.y((first[i + 1] + second[i + 1]) / 2));
     this.now.setAttribute('x1', this.nowX(time));
     this.now.setAttribute('x2', this.nowX(time));
   }

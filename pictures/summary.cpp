@@ -22,9 +22,9 @@ std::string effort_unit_name(const Cloth& cloth) {
 
 void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,
                    const Rollout& rollout, double sensitivity) {
-  const Chain& chain = backend.problem().chain();
-  const double percent = 100 / chain.size;
-  fmt::print(file, "{}: {} particles on {}, {} steps of {}\n", printable(scene), chain.particles(),
+  const Cloth& cloth = backend.cloth();
+  const double percent = 100 / cloth.size;
+  fmt::print(file, "{}: {} particles on {}, {} steps of {}\n", printable(scene), cloth.particles(),
              backend.name(), backend.steps(), duration(backend.time_step()));
   const std::vector<double> gains = rollout.gains.groups();
   fmt::print(file, "  {:<17} {:.4g} N/m\n", gains.size() > 1 ? "gains α" : "gain α",
@@ -33,7 +33,7 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
              percent * rollout.error.mean, percent * rollout.error.max);
   fmt::print(file, "  {:<17} {:.3g} m from the target's\n", "centroid", rollout.error.centroid);
   fmt::print(file, "  {:<17} {:.4g} {}\n", "control effort", rollout.control_effort,
-             effort_unit_name(chain));
+             effort_unit_name(cloth));
   fmt::print(file, "  {:<17} {:.3g} % at most on the way\n", "strain", 100 * rollout.max_strain);
   fmt::print(file, "  {:<17} {:.3g}-fold growth of a small change at the start\n", "sensitivity",
              sensitivity);

@@ -153,7 +153,7 @@ Answer about_answer(const Request&) {
     defaults.erase(required);
   }
   return {.body = dump({{"version", NUNO_VERSION},
-                        {"backends", backend_names},
+                        {"backends", chain_engines},
                         {"optimizers", optimizer_names},
                         {"defaults", defaults}})};
 }
@@ -163,7 +163,7 @@ Answer progress_answer(const Request& request) {
 }
 
 Answer scene_answer(const Request& request) {
-  return {.body = nuno::to_json(read_scene(request).scene)};
+  return {.body = nuno::to_json(parse_scene(request.body, "scene.json"))};
 }
 
 Answer optimize_answer(const Request& request) { return throw_answer(request, std::nullopt); }

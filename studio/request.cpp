@@ -64,7 +64,7 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
     if (name == "page") {
       options.page = text;
     } else if (name == "backend") {
-      options.backend = word(name, text, backend_names);
+      options.backend = word(name, text, chain_engines);
     } else if (name == "optimizer") {
       options.optimizer = word(name, text, optimizer_names);
     } else if (name == "alpha") {
@@ -96,18 +96,18 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
 
 SceneFile read_scene(const Request& request) {
   // The name under which the page saves it.
-  return parse_scene_file(request.body, "scene.json");
+  return make_scene_file("scene.json", parse_scene(request.body, "scene.json"));
 }
 
 void require_quick(const SceneFile& file, const Backend& backend, const Options& options) {
-  const double particles = static_cast<double>(file.scene.particles);
+  const double particles = static_cast<double>(file.problem.cloth().particles());
   if (work_of(backend) > most_particle_steps(backend)) {
     throw InputError(
         fmt::format("{}: /particles: {} is not few enough for the studio: with {} steps on {}, "
                     "this is for nuno optimize",
-                    file.path, file.scene.particles, backend.steps(), backend.name()));
+                    file.path, particles, backend.steps(), backend.name()));
   }
-  if (options.refine) require_few_particles_to_refine(file);
+  if (options.refine) require_refinable(file);
   if (options.after > most_flights_after * file.scene.arrival_time) {
     throw InputError(fmt::format("after: {} is not <= {}, {} arrival times", options.after,
                                  most_flights_after * file.scene.arrival_time, most_flights_after));
@@ -120,13 +120,13 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
 }
 
 void require_few_frames_in_file(const SceneFile& file) {
-  const ChainScene& scene = file.scene;
-  const double most = frames_per_second_of(most_points_in_frames, scene);
-  if (scene.frames_per_second > most) {
+  const double most = frames_per_second_of(most_points_in_frames, file);
+  if (file.scene.frames_per_second > most) {
     throw InputError(
         fmt::format("{}: /frames_per_second: {} is not <= {:.4g}, the most that the studio makes a "
                     "file of with {} particles over {} s",
-                    file.path, scene.frames_per_second, most, scene.particles, scene.arrival_time));
+                    file.path, file.scene.frames_per_second, most, file.problem.cloth().particles(),
+                    file.scene.arrival_time));
   }
 }
 

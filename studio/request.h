@@ -18,7 +18,7 @@ using Parameters = std::multimap<std::string, std::string>;
 /// The options of a request, named as the command line's are; API.md has their meaning.
 struct Options {
   std::string page;
-  std::string backend{backend_names.front()};
+  std::string backend{chain_engines.front()};
   std::string optimizer{optimizer_names.front()};
   std::optional<double> alpha;
   std::optional<double> warm_start;

@@ -23,7 +23,7 @@ double shape_gap(const Problem& problem, double gain, std::optional<double> box2
 }
 
 Problem inextensible_s_curve() {
-  return make_problem(read_scene(NUNO_SCENES "/s-curve-32-inextensible.json"));
+  return make_problem(std::get<ChainScene>(read_scene(NUNO_SCENES "/s-curve-32-inextensible.json")));
 }
 
 TEST(CrossCheck, BothEnginesEndInOneShapeAtTheBestGain) {
@@ -75,7 +75,7 @@ TEST(CrossCheck, TheOtherEnginesBestGainCostsLittle) {
 TEST(CrossCheck, GlobalSearchIsNeverWorseThanSteepestDescent) {
   for (const auto& entry : std::filesystem::directory_iterator(NUNO_SCENES)) {
     if (entry.path().extension() != ".json") continue;
-    ChainScene scene = read_scene(entry.path().string());
+    auto scene = std::get<ChainScene>(read_scene(entry.path().string()));
     const Problem problem = make_problem(scene);
     for (const bool box2d : {false, true}) {
       if (box2d && problem.chain().particles() > 32) continue;  // for the test's time

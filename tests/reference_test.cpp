@@ -27,7 +27,7 @@ Reference reference(const std::string& name) {
 }
 
 Problem problem_of(const std::string& name) {
-  return make_problem(read_scene(NUNO_SCENES "/" + name + ".json"));
+  return make_problem(std::get<ChainScene>(read_scene(NUNO_SCENES "/" + name + ".json")));
 }
 
 class NativeReference : public testing::TestWithParam<const char*> {};

@@ -164,7 +164,7 @@ std::vector<BadCommand> bad_commands() {
       {"NoCommand", {}, "nuno: a command is missing; see nuno --help"},
       {"UnknownCommand",
        {"simulat"},
-       "nuno: \"simulat\" is not one of simulate, optimize, compare, studio, figures, render"},
+       "nuno: \"simulat\" is not one of simulate, optimize, throw, compare, studio, figures, render"},
       {"UnknownGlobalOption", {"--bogus"}, "--bogus: is not a known option"},
       {"NoScene", {"simulate"}, "SCENE: is missing; it is required"},
       {"NoSceneToCompare", {"compare"}, "SCENE: is missing; it is required"},
@@ -198,8 +198,8 @@ std::vector<BadCommand> bad_commands() {
        {"optimize", s, "--time-step", "-0.001"},
        "--time-step: -0.001 is not > 0"},
       {"UnknownBackend",
-       {"simulate", s, "--backend", "bullet"},
-       "--backend: \"bullet\" is not one of native, box2d"},
+       {"simulate", s, "--backend", "havok"},
+       "--backend: \"havok\" is not one of native, box2d, bullet"},
       {"UnknownOptimizer",
        {"optimize", s, "--optimizer", "newton"},
        "--optimizer: \"newton\" is not one of global, steepest-descent"},
@@ -262,7 +262,7 @@ std::vector<BadCommand> bad_commands() {
       {"OutputMissing", {"compare", s, "--out"}, "--out: takes exactly one value"},
       {"NewlineInAnOption",
        {"simulate", s, "--backend", "a\nb"},
-       "--backend: \"a b\" is not one of native, box2d"},
+       "--backend: \"a b\" is not one of native, box2d, bullet"},
   };
 }
 

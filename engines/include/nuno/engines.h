@@ -3,6 +3,7 @@
 #include <nuno/backend.h>
 #include <nuno/optimize.h>
 #include <nuno/refine.h>
+#include <nuno/scene_file.h>
 
 #include <array>
 #include <functional>
@@ -13,35 +14,44 @@
 
 namespace nuno {
 
-/// A scene file, read, validated and resampled.
+/// A scene file, read, validated and made ready to be flown.
 struct SceneFile {
   std::string path;
-  ChainScene scene;
+  Scene scene;  ///< what is asked, whatever the cloth's form
   Problem problem;
+  std::optional<Mesh> mesh = {};  ///< of a sheet's initial shape
 };
+
+/// `path` is what messages call the scene.
+SceneFile make_scene_file(const std::string& path, AnyScene scene);
 
 /// `time_step`, if given, takes the place of the scene's.
 SceneFile read_scene_file(const std::string& path, std::optional<double> time_step = std::nullopt);
 
-/// The same from JSON text that messages call `path`.
-SceneFile parse_scene_file(const std::string& json, const std::string& path);
-
 /// Frames per second with which a flight of this scene holds so many points [1/s].
-double frames_per_second_of(double points, const ChainScene& scene);
+double frames_per_second_of(double points, const SceneFile& file);
 
 /// Throws InputError if a result of this scene would hold more frames than memory does.
 void require_few_frames(const SceneFile& file);
 
-/// Throws InputError for a scene that is too large for refine_on.
-void require_few_particles_to_refine(const SceneFile& file);
+/// Throws InputError for a scene that refine_on cannot take: a sheet, or too large a chain.
+void require_refinable(const SceneFile& file);
 
 /// Throws InputError if the scene's particles have too few modes for so many groups of them.
 void require_groups(const SceneFile& file, Index groups);
 
-inline constexpr std::array<std::string_view, 2> backend_names = {"native", "box2d"};
+/// The two engines that fly chains, and those that fly sheets; the one of the project first.
+inline constexpr std::array<std::string_view, 2> chain_engines = {"native", "box2d"};
+inline constexpr std::array<std::string_view, 2> sheet_engines = {"native", "bullet"};
+inline constexpr std::array<std::string_view, 3> backend_names = {"native", "box2d", "bullet"};
+
+/// Those that fly the problem's cloth.
+inline const std::array<std::string_view, 2>& engines_for(const Problem& problem) {
+  return problem.is_sheet() ? sheet_engines : chain_engines;
+}
 
 /// The engine called `name`, one of backend_names, made ready for the scene. Throws InputError
-/// where one rollout would take hours.
+/// where it does not fly such a cloth, or where one rollout would take hours.
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file);
 
 /// The same with a step that is short enough for `gain` as well.

@@ -1,0 +1,268 @@
+// Steps of one sheet, and whole flights at as many gains as a number has lanes.
+
+#include "sheet_kernel.h"
+
+#include <nuno/shape_control.h>
+
+#include <algorithm>
+#include <memory>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sheet_rollout.cpp"
+#include <hwy/foreach_target.h>  // compiles the rest of this file once for every target
+// clang-format off: it needs the target to be chosen
+#include "sheet_step-inl.h"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
+namespace nuno::native {
+namespace HWY_NAMESPACE {
+
+#undef NUNO_INLINE_LAMBDA
+#define NUNO_INLINE_LAMBDA __attribute__((always_inline)) HWY_ATTR
+
+void step_sheet(const SheetPlan& plan, const double* forces, SheetState& state) {
+  static_assert(sizeof(Vec3<Real>) == 3 * sizeof(double));
+  const SheetArrays<Real> sheet{reinterpret_cast<Vec3<Real>*>(state.positions.data()),
+                                reinterpret_cast<Vec3<Real>*>(state.impulse.data()),
+                                state.length.data(), state.turn.data()};
+  advance_sheet(plan, state.first, sheet, [&](Index i) NUNO_INLINE_LAMBDA {
+    const double* force = forces + 3 * plan.user_index[static_cast<std::size_t>(i)];
+    return Vec3<Real>{force[0], force[1], force[2]};
+  });
+  state.first = false;
+}
+
+/// θ − θ₀ of every hinge, a step before `state` at these rates of the particles [3 × N].
+void begin_turns(const SheetPlan& plan, const double* rates, SheetState& state) {
+  const auto* x = reinterpret_cast<const Vec3<Real>*>(state.positions.data());
+  const auto* v = reinterpret_cast<const Vec3<Real>*>(rates);
+  for (std::size_t h = 0; h < state.turn.size(); ++h) {
+    const Index* corners = plan.corners.data() + 4 * h;
+    const Index a = corners[0], b = corners[1], c = corners[2], d = corners[3];
+    const HingeShape<Real> shape(x[a], x[b], x[c], x[d], plan.rest_cosine[h], plan.rest_sine[h]);
+    // Velocities over the line through a and b, where the feet of c and d are.
+    const Vec3<Real> along = v[b] - v[a];
+    const Real one = dot(shape.n1, subtract_scaled(shape.t1, along, v[c] - v[a]));
+    const Real two = dot(shape.n2, subtract_scaled(shape.t2, along, v[d] - v[a]));
+    state.turn[h] = shape.turn + plan.H * (shape.g1 * one + shape.g2 * two);
+  }
+}
+
+// ---- numbers of a gain in every lane --------------------------------------------------------
+
+template <typename T>
+HWY_INLINE T lanes_with_derivative(const double* values, const double*, T) {
+  return load_lanes(values, T());
+}
+template <typename T>
+HWY_INLINE Dual<T> lanes_with_derivative(const double* values, const double* derivatives, Dual<T>) {
+  return {load_lanes(values, T()), load_lanes(derivatives, T())};
+}
+
+template <typename T>
+HWY_INLINE void write_sheet_lanes(T number, double* values, double*, Index stride, Index count) {
+  double lanes[HWY_MAX_BYTES / sizeof(double)] = {};
+  store_lanes(number, lanes);
+  for (Index lane = 0; lane < count; ++lane) values[lane * stride] = lanes[lane];
+}
+template <typename T>
+HWY_INLINE void write_sheet_lanes(Dual<T> number, double* values, double* derivatives, Index stride,
+                                  Index count) {
+  write_sheet_lanes(number.value, values, nullptr, stride, count);
+  write_sheet_lanes(number.derivative, derivatives, nullptr, stride, count);
+}
+
+/// The control law of ShapeControl with one gain, a lane each.
+template <typename T>
+struct SheetControl {
+  T gain, damping;
+
+  SheetControl(const SheetPlan& plan, std::span<const double> gains) {
+    constexpr std::size_t most = HWY_MAX_BYTES / sizeof(double);
+    double gain_values[most] = {}, ones[most] = {}, damping_values[most] = {}, rates[most] = {};
+    for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes_of(T())); ++lane) {
+      const double value = gains[std::min(lane, gains.size() - 1)];
+      gain_values[lane] = value;
+      ones[lane] = 1;
+      damping_values[lane] = shape_damping(plan.damping_ratio, value, plan.particle_mass);
+      // β = 2ζ·√(α·m); at α = 0, where its derivative is infinite, it is given as none.
+      rates[lane] = value > 0 ? 0.5 * damping_values[lane] / value : 0;
+    }
+    gain = lanes_with_derivative(gain_values, ones, T());
+    damping = lanes_with_derivative(damping_values, rates, T());
+  }
+};
+
+/// Σ mᵢ·xᵢ/Σ mᵢ, summed as mass_center of the core does.
+template <typename T>
+HWY_INLINE Vec3<T> sheet_center(const SheetPlan& plan, const Vec3<T>* x) {
+  Vec3<T> sum{Constant<T>::of(0), Constant<T>::of(0), Constant<T>::of(0)};
+  for (std::size_t i = plan.relative_mass.size(); i-- > 0;) {
+    sum = sum + scale(plan.relative_mass[i], x[plan.plan_index[i]]);
+  }
+  const T particles = Constant<T>::of(static_cast<double>(plan.particles));
+  return {divide(sum.x, particles), divide(sum.y, particles), divide(sum.z, particles)};
+}
+
+template <bool damped_control, typename T>
+void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const SheetState& start,
+                     const double* launch_velocity, std::span<const double> gains, double* finals,
+                     double* derivatives) {
+  const Index n = plan.particles;
+  const auto size = static_cast<std::size_t>(n);
+  const auto broadcast = [](const std::vector<double>& from) NUNO_INLINE_LAMBDA {
+    std::unique_ptr<T[]> to(new T[from.size()]);
+    for (std::size_t i = 0; i < from.size(); ++i) to[i] = Constant<T>::of(from[i]);
+    return to;
+  };
+  const std::unique_ptr<T[]> positions = broadcast(start.positions);
+  const std::unique_ptr<T[]> impulse = broadcast(start.impulse);
+  const std::unique_ptr<T[]> length = broadcast(start.length);
+  const std::unique_ptr<T[]> turn = broadcast(start.turn);
+  static_assert(sizeof(Vec3<T>) == 3 * sizeof(T));
+  const SheetArrays<T> sheet{reinterpret_cast<Vec3<T>*>(positions.get()),
+                             reinterpret_cast<Vec3<T>*>(impulse.get()), length.get(), turn.get()};
+  // Mean velocities over the last step, and positions before it; in the plan's order.
+  const std::unique_ptr<Vec3<T>[]> velocity(new Vec3<T>[damped_control ? size : 0]);
+  const std::unique_ptr<Vec3<T>[]> before(new Vec3<T>[damped_control ? size : 0]);
+  if constexpr (damped_control) {
+    for (Index i = 0; i < n; ++i) {
+      const double* v = launch_velocity + 3 * plan.user_index[static_cast<std::size_t>(i)];
+      velocity[i] = {Constant<T>::of(v[0]), Constant<T>::of(v[1]), Constant<T>::of(v[2])};
+    }
+  }
+  const SheetControl<T> control(plan, gains);
+  for (Index step = 0; step < plan.steps; ++step) {
+    const double* shape = reference.shape().data();
+    const double* motion = reference.velocity().data();
+    const Vec3<T> center = sheet_center(plan, sheet.x);
+    Vec3<T> drift = center;
+    if constexpr (damped_control) drift = sheet_center(plan, velocity.get());
+    advance_sheet(plan, step == 0, sheet, [&](Index i) NUNO_INLINE_LAMBDA {
+      const Index user = plan.user_index[static_cast<std::size_t>(i)];
+      const auto missing = [&](const double* of, const Vec3<T>& mean,
+                               const Vec3<T>& here) NUNO_INLINE_LAMBDA {
+        const double* at = of + 3 * user;
+        return Vec3<T>{shift(at[0], mean.x - here.x), shift(at[1], mean.y - here.y),
+                       shift(at[2], mean.z - here.z)};
+      };
+      Vec3<T> pull = control.gain * missing(shape, center, sheet.x[i]);
+      if constexpr (damped_control) {
+        pull = pull + control.damping * missing(motion, drift, velocity[i]);
+        before[i] = sheet.x[i];
+      }
+      return scale(plan.relative_mass[static_cast<std::size_t>(user)], pull);
+    });
+    if constexpr (damped_control) {
+      for (Index i = 0; i < n; ++i) velocity[i] = scale(1 / plan.H, sheet.x[i] - before[i]);
+    }
+    reference.advance();
+  }
+  const auto count = static_cast<Index>(gains.size());
+  for (Index i = 0; i < n; ++i) {
+    const Index at = 3 * plan.user_index[static_cast<std::size_t>(i)];
+    const T coordinates[3] = {sheet.x[i].x, sheet.x[i].y, sheet.x[i].z};
+    for (Index row = 0; row < 3; ++row) {
+      write_sheet_lanes(coordinates[row], finals + at + row,
+                        derivatives == nullptr ? nullptr : derivatives + at + row, 3 * n, count);
+    }
+  }
+}
+
+template <typename T>
+auto sheet_flight_of(const SheetPlan& plan) {
+  return plan.damping_ratio > 0 ? fly_sheet_lanes<true, T> : fly_sheet_lanes<false, T>;
+}
+
+void fly_sheet_all(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
+                   const double* launch_velocity, std::span<const double> gains, double* finals,
+                   double* derivatives) {
+  const auto wide = static_cast<std::size_t>(lanes_of(Pack()));
+  const std::size_t stride = static_cast<std::size_t>(3 * plan.particles);
+  for (std::size_t first = 0; first < gains.size(); first += wide) {
+    const std::span<const double> here = gains.subspan(first, std::min(wide, gains.size() - first));
+    const auto flight = derivatives != nullptr ? sheet_flight_of<Dual<Pack>>(plan)
+                        : here.size() == 1     ? sheet_flight_of<Real>(plan)
+                                               : sheet_flight_of<Pack>(plan);
+    flight(plan, reference, start, launch_velocity, here, finals + first * stride,
+           derivatives == nullptr ? nullptr : derivatives + first * stride);
+  }
+}
+
+Index sheet_lanes() { return lanes_of(Pack()); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace nuno::native
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace nuno::native {
+
+HWY_EXPORT(step_sheet);
+HWY_EXPORT(begin_turns);
+HWY_EXPORT(fly_sheet_all);
+HWY_EXPORT(sheet_lanes);
+
+SheetState begin(const SheetPlan& plan, const Points& positions, const Points& velocities) {
+  const auto n = static_cast<std::size_t>(plan.particles);
+  SheetState state;
+  state.positions.resize(3 * n);
+  state.impulse.resize(3 * n);
+  std::vector<double> rates(3 * n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Index user = plan.user_index[i];
+    const double mass =
+        plan.particle_mass * plan.relative_mass[static_cast<std::size_t>(user)] / plan.kick_time;
+    for (std::size_t row = 0; row < 3; ++row) {
+      state.positions[3 * i + row] = positions(static_cast<Index>(row), user);
+      rates[3 * i + row] = velocities(static_cast<Index>(row), user);
+      state.impulse[3 * i + row] = mass * plan.first_keep * rates[3 * i + row];
+    }
+    state.impulse[3 * i + 1] -= plan.first_share * plan.weight[i];
+  }
+  if (!plan.dashpot.empty()) {
+    const auto at = [](const std::vector<double>& values, std::size_t i) {
+      return Eigen::Map<const Eigen::Vector3d>(values.data() + 3 * i);
+    };
+    state.length.resize(plan.spring.size());
+    for (std::size_t i = 0, e = 0; i < n; ++i) {
+      for (; static_cast<Index>(e) < plan.first_spring[i + 1]; ++e) {
+        const auto j = static_cast<std::size_t>(plan.far_end[e]);
+        const Eigen::Vector3d span = at(state.positions, j) - at(state.positions, i);
+        const double length = span.norm();
+        const double rate = span.dot(at(rates, j) - at(rates, i)) / length;
+        state.length[e] = length - plan.h * rate;
+      }
+    }
+  }
+  if (!plan.hinge_dashpot.empty()) {
+    state.turn.resize(plan.hinge_spring.size());
+    HWY_DYNAMIC_DISPATCH(begin_turns)(plan, rates.data(), state);
+  }
+  return state;
+}
+
+void step(const SheetPlan& plan, const Points& forces, SheetState& state) {
+  HWY_DYNAMIC_DISPATCH(step_sheet)(plan, forces.data(), state);
+}
+
+void read_positions(const SheetPlan& plan, const SheetState& state, Points& positions) {
+  positions.resize(3, plan.particles);
+  for (Index i = 0; i < plan.particles; ++i) {
+    positions.col(plan.user_index[static_cast<std::size_t>(i)]) =
+        Eigen::Map<const Eigen::Vector3d>(state.positions.data() + 3 * i);
+  }
+}
+
+void fly(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
+         const Points& launch_velocity, std::span<const double> gains, double* finals,
+         double* derivatives) {
+  HWY_DYNAMIC_DISPATCH(fly_sheet_all)
+  (plan, reference, start, launch_velocity.data(), gains, finals, derivatives);
+}
+
+Index sheet_lanes() { return HWY_DYNAMIC_DISPATCH(sheet_lanes)(); }
+
+}  // namespace nuno::native
+#endif  // HWY_ONCE

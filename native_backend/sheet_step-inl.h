@@ -1,0 +1,238 @@
+// The sheet's equations of motion, written once for every number (number-inl.h).
+//
+// Springs. Between particles i and j, l = |d|, d = xⱼ − xᵢ: the force k·(l − ℓ) + c·l̇ along d. The
+// rate l̇ is that of the last substep, (l − l_before)/h.
+//
+// Hinges. At the edge e = b − a between the triangles (a, b, c) and (b, a, d), with the normals
+//     n₁ = e × (c − a),   n₂ = (d − a) × e,
+// of twice the triangles' areas,
+//     cos θ = n₁·n₂/(|n₁||n₂|),   sin θ = −|e|·n₁·(d − a)/(|n₁||n₂|)
+// (the latter by (e × c) × (d × e) = −(e × c · d)·e). Angles are taken from the rest angle, by the
+// sine and cosine of θ − θ₀, so that a hinge may pass θ = π. With M = k·(θ − θ₀) + c·θ̇ the forces
+// −M·∂θ/∂x are
+//     on c: G₁ = M·|e|/|n₁|²·n₁,   on d: G₂ = M·|e|/|n₂|²·n₂,
+//     on b: −(t₁·G₁ + t₂·G₂),      on a: what makes the sum zero,
+// where t₁ = (c − a)·e/e² and t₂ = (d − a)·e/e² tell the feet of c and d on the edge.
+//
+// Scheme. Leapfrog with multiple time steps: a step H of the hinges and the control has n substeps
+// h = H/n of the springs, whose frequency is far higher and whose force is far cheaper. Positions
+// at whole substeps, velocities at half ones,
+//     v' = r·v − q·g + (q/m)·f,   x' = x + h·v',   r = e^(−κh), q = (1 − r)/κ,
+// where f has the springs in every substep and n times the slow forces in the first of a step: they
+// kick for all of the step at once (the impulse method, Verlet-I or r-RESPA: Grubmüller et al.
+// 1991, Tuckerman et al. 1992). Second order, symmetric in time, exact for gravity and drag; the
+// first kick starts from the launch velocity at t = 0, so it is half as long.
+//
+// What is stored is u = m·v/q, so that forces add to it as they are. A pass over the particles does
+// a substep: a particle's springs to those after it give the last of its force, so it is moved at
+// once, and u goes on to r·u − m·g, ready for the next kick.
+
+#if defined(NUNO_SHEET_STEP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef NUNO_SHEET_STEP_INL_H_
+#undef NUNO_SHEET_STEP_INL_H_
+#else
+#define NUNO_SHEET_STEP_INL_H_
+#endif
+
+#include "sheet_kernel.h"
+
+#include <hwy/highway.h>
+#include "number-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace nuno::native {
+namespace HWY_NAMESPACE {
+
+template <typename T>
+struct Vec3 {
+  T x, y, z;
+};
+template <typename T>
+HWY_INLINE Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <typename T>
+HWY_INLINE Vec3<T> operator-(const Vec3<T>& a, const Vec3<T>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <typename T>
+HWY_INLINE Vec3<T> operator*(const T& a, const Vec3<T>& b) {
+  return {a * b.x, a * b.y, a * b.z};
+}
+template <typename T>
+HWY_INLINE T dot(const Vec3<T>& a, const Vec3<T>& b) {
+  return mul_add(a.x, b.x, mul_add(a.y, b.y, a.z * b.z));
+}
+template <typename T>
+HWY_INLINE Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+  return {neg_mul_add(a.z, b.y, a.y * b.z), neg_mul_add(a.x, b.z, a.z * b.x),
+          neg_mul_add(a.y, b.x, a.x * b.y)};
+}
+/// c + a·b
+template <typename T>
+HWY_INLINE Vec3<T> add_scaled(const T& a, const Vec3<T>& b, const Vec3<T>& c) {
+  return {mul_add(a, b.x, c.x), mul_add(a, b.y, c.y), mul_add(a, b.z, c.z)};
+}
+/// c − a·b
+template <typename T>
+HWY_INLINE Vec3<T> subtract_scaled(const T& a, const Vec3<T>& b, const Vec3<T>& c) {
+  return {neg_mul_add(a, b.x, c.x), neg_mul_add(a, b.y, c.y), neg_mul_add(a, b.z, c.z)};
+}
+/// c + a·b with a constant a
+template <typename T>
+HWY_INLINE Vec3<T> scale_add(double a, const Vec3<T>& b, const Vec3<T>& c) {
+  return {scale_add(a, b.x, c.x), scale_add(a, b.y, c.y), scale_add(a, b.z, c.z)};
+}
+template <typename T>
+HWY_INLINE Vec3<T> scale(double a, const Vec3<T>& b) {
+  return {scale(a, b.x), scale(a, b.y), scale(a, b.z)};
+}
+
+/// An angle between −2π and 2π, turned into [−π, π].
+template <typename T>
+HWY_INLINE T within_half_turn(T angle) {
+  const T pi(3.141592653589793), turn(6.283185307179586);
+  const T lower = where_greater(angle, pi, angle - turn, angle);
+  return where_greater(T(0.0) - pi, lower, lower + turn, lower);
+}
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> within_half_turn(Dual<T, S> angle) {
+  return {within_half_turn(angle.value), angle.derivative};
+}
+
+/// The numbers of a sheet in flight, see SheetState.
+template <typename T>
+struct SheetArrays {
+  Vec3<T>* x;
+  Vec3<T>* u;
+  T* length;
+  T* turn;
+};
+
+/// A substep: the springs kick for `share` of a full kick, and all move.
+template <bool damped, bool whole, typename T>
+HWY_INLINE void spring_substep(const SheetPlan& plan, double share, const SheetArrays<T>& sheet) {
+  const Index* far_end = plan.far_end.data();
+  const double* spring = plan.spring.data();
+  const double* rest_tension = plan.rest_tension.data();
+  const double* dashpot = plan.dashpot.data();
+  Index e = 0;
+  for (Index i = 0; i < plan.particles; ++i) {
+    const Vec3<T> x = sheet.x[i];
+    Vec3<T> u = sheet.u[i];
+    for (const Index end = plan.first_spring[static_cast<std::size_t>(i + 1)]; e < end; ++e) {
+      const Index j = far_end[e];
+      const Vec3<T> d = sheet.x[j] - x;
+      const T squared = dot(d, d);
+      const T inverse = rsqrt(squared);
+      const T length = squared * inverse;
+      T tension = scale_add(spring[e], length, Constant<T>::of(-rest_tension[e]));
+      if constexpr (damped) {
+        tension = scale_add(dashpot[e], length - sheet.length[e], tension);
+        sheet.length[e] = length;
+      }
+      T pull = tension * inverse;
+      if constexpr (!whole) pull = scale(share, pull);
+      u = add_scaled(pull, d, u);
+      sheet.u[j] = subtract_scaled(pull, d, sheet.u[j]);
+    }
+    sheet.x[i] = scale_add(plan.move[static_cast<std::size_t>(i)], u, x);
+    sheet.u[i] = {scale(plan.keep, u.x),
+                  shift(-plan.weight[static_cast<std::size_t>(i)], scale(plan.keep, u.y)),
+                  scale(plan.keep, u.z)};
+  }
+}
+
+/// A hinge's geometry at some positions.
+template <typename T>
+struct HingeShape {
+  Vec3<T> n1, n2;
+  T g1, g2;  ///< |e|/|n₁|², |e|/|n₂|²
+  T t1, t2;
+  T turn;  ///< θ − θ₀
+
+  HWY_INLINE HingeShape(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c, const Vec3<T>& d,
+                        double rest_cosine, double rest_sine) {
+    const Vec3<T> e = b - a, to_c = c - a, to_d = d - a;
+    n1 = cross(e, to_c);
+    n2 = cross(to_d, e);
+    const T squared = dot(e, e), one = dot(n1, n1), two = dot(n2, n2);
+    const T inverse = rsqrt(squared);
+    const T length = squared * inverse;
+    const T w = rsqrt(one * two);
+    const T cosine = w * dot(n1, n2);
+    const T negative_sine = (w * length) * dot(n1, to_d);
+    // Of θ − θ₀.
+    turn = angle(neg_add(scale(rest_cosine, negative_sine), scale(rest_sine, cosine)),
+                 scale_add(rest_cosine, cosine, scale(-rest_sine, negative_sine)));
+    const T scaled = length * (w * w);
+    g1 = scaled * two;
+    g2 = scaled * one;
+    const T per_square = inverse * inverse;
+    t1 = per_square * dot(to_c, e);
+    t2 = per_square * dot(to_d, e);
+  }
+
+  /// −a − b
+  static HWY_INLINE T neg_add(T a, T b) { return (Constant<T>::of(0) - a) - b; }
+};
+
+/// The hinges kick for `kicks` of a full kick of a substep.
+template <bool damped, typename T>
+HWY_INLINE void hinge_kick(const SheetPlan& plan, double kicks, const SheetArrays<T>& sheet) {
+  const Index* corners = plan.corners.data();
+  for (Index h = 0; h < plan.hinges(); ++h, corners += 4) {
+    const auto at = static_cast<std::size_t>(h);
+    const Index a = corners[0], b = corners[1], c = corners[2], d = corners[3];
+    const HingeShape<T> shape(sheet.x[a], sheet.x[b], sheet.x[c], sheet.x[d], plan.rest_cosine[at],
+                              plan.rest_sine[at]);
+    T moment = scale(kicks * plan.hinge_spring[at], shape.turn);
+    if constexpr (damped) {
+      moment = scale_add(kicks * plan.hinge_dashpot[at],
+                         within_half_turn(shape.turn - sheet.turn[h]), moment);
+      sheet.turn[h] = shape.turn;
+    }
+    const Vec3<T> one = (moment * shape.g1) * shape.n1;
+    const Vec3<T> two = (moment * shape.g2) * shape.n2;
+    const Vec3<T> at_b = add_scaled(shape.t1, one, shape.t2 * two);
+    sheet.u[a] = sheet.u[a] + (at_b - (one + two));
+    sheet.u[b] = sheet.u[b] - at_b;
+    sheet.u[c] = sheet.u[c] + one;
+    sheet.u[d] = sheet.u[d] + two;
+  }
+}
+
+/// One step. `external(i)` is the force on particle i of the plan's order.
+template <typename T, typename External>
+HWY_INLINE void advance_sheet(const SheetPlan& plan, bool first, const SheetArrays<T>& sheet,
+                              External&& external) {
+  const double share = first ? plan.first_share : 1;
+  const double kicks = share * static_cast<double>(plan.substeps);
+  for (Index i = 0; i < plan.particles; ++i) {
+    sheet.u[i] = scale_add(kicks, external(i), sheet.u[i]);
+  }
+  if (plan.hinge_dashpot.empty()) {
+    hinge_kick<false>(plan, kicks, sheet);
+  } else {
+    hinge_kick<true>(plan, kicks, sheet);
+  }
+  for (Index n = 0; n < plan.substeps; ++n) {
+    if (plan.dashpot.empty()) {
+      if (n == 0 && first) {
+        spring_substep<false, false>(plan, share, sheet);
+      } else {
+        spring_substep<false, true>(plan, 1, sheet);
+      }
+    } else if (n == 0 && first) {
+      spring_substep<true, false>(plan, share, sheet);
+    } else {
+      spring_substep<true, true>(plan, 1, sheet);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace nuno::native
+HWY_AFTER_NAMESPACE();
+
+#endif  // per-target include guard
