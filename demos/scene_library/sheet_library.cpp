@@ -121,4 +121,69 @@ Points placed(const Points& points, const Eigen::Vector3d& turn, const Eigen::Ve
   return (rotation * points).colwise() + by;
 }
 
+namespace {
+
+const Eigen::Vector3d upright(pi / 2, 0, 0);  ///< turns what lies in y = 0 to stand in z = 0
+
+/// A sheet from a flat pose to a target [3 × N].
+SheetScene sheet(const char* name, double arrival_time, const FlatMesh& mesh, const Points& initial,
+                 const Points& target) {
+  SheetScene scene;
+  scene.name = name;
+  scene.arrival_time = arrival_time;
+  scene.initial = initial;
+  scene.target = target;
+  scene.faces = mesh.faces;
+  scene.reference = Reference::morph;
+  scene.damping_ratio = 0.7;
+  return scene;
+}
+
+SheetScene flag() {
+  const FlatMesh mesh = grid(1.2, 0.8, 19, 13);
+  const Points pipe = bent(mesh.vertices, 0, [](double u) { return pi / 1.2 * u; });
+  return sheet("flag-to-half-pipe", 1.2, mesh, placed(mesh.vertices, upright, {0, 1.5, 0}),
+               placed(pipe, {0, 0.6, 0}, {3, 0.8, 0.6}));
+}
+
+SheetScene square() {
+  const FlatMesh mesh = grid(1, 1, 17, 17);
+  const Points s = bent(mesh.vertices, 0, [](double u) { return std::cos(2 * pi * u); });
+  return sheet("square-to-s", 1.2, mesh, placed(mesh.vertices, {0, 0, 0}, {0, 1, 0}),
+               placed(s, {0.5, 0.3, 0.9}, {3, 1.5, -0.5}));
+}
+
+/// Lines that stand closer where the fold will be.
+SheetScene napkin() {
+  constexpr double half = 0.25, fold = 0.07;  // half the side and half the arc of the fold [m]
+  Vector x(19);
+  x << Vector::LinSpaced(5, -half, -fold).head(4), Vector::LinSpaced(11, -fold, fold),
+      Vector::LinSpaced(5, fold, half).tail(4);
+  const FlatMesh mesh = grid(x, Vector::LinSpaced(13, -half, half));
+  const Points folded = bent(mesh.vertices, 0, [](double u) {
+    return -0.28 * pi * std::clamp(u / fold, -1.0, 1.0);  // by 101°
+  });
+  return sheet("napkin-over-an-edge", 1.5, mesh, placed(mesh.vertices, {0, 0, 0}, {0, 1, 0}),
+               placed(folded, {0, 0.4, 0}, {1.5, 0.7, 0.3}));
+}
+
+SheetScene cape() {
+  const FlatMesh mesh = uneven_ring(0.14, 0.6, 0.07);
+  const Points worn = bent(mesh.vertices, 0.3, [](double u) { return -0.8 * pi * u; });
+  return sheet("cape-with-a-hole", 1, mesh, placed(mesh.vertices, upright, {0, 1.2, 0}),
+               placed(worn, {0.2, -0.3, 0}, {2.5, 1.4, 0}));
+}
+
+SheetScene tablecloth() {
+  const FlatMesh mesh = in_triangles(grid(1, 1, 15, 15));
+  Points saddle = mesh.vertices;
+  saddle.row(1) = 0.5 * (saddle.row(0).array().square() - saddle.row(2).array().square()).matrix();
+  return sheet("tablecloth-to-saddle", 1, mesh, placed(mesh.vertices, {0, 0, 0}, {0, 1, 0}),
+               placed(saddle, {0, 0.5, 0}, {2.5, 1.2, 0}));
+}
+
+}  // namespace
+
+std::vector<SheetScene> sheets() { return {flag(), square(), napkin(), cape(), tablecloth()}; }
+
 }  // namespace nuno::scene_library

@@ -3,6 +3,7 @@
 #include <nuno/scene.h>
 
 #include <functional>
+#include <vector>
 
 /// Sheets that tests and demos share; all are made from numbers.
 namespace nuno::scene_library {
@@ -31,5 +32,10 @@ Points bent(const Points& flat, double across, const std::function<double(double
 
 /// Points turned by a rotation vector about the origin, then moved.
 Points placed(const Points& points, const Eigen::Vector3d& turn, const Eigen::Vector3d& by);
+
+/// The sheets of demos/scenes/sheets: a flag into a half pipe, a square into an S, a napkin folded
+/// over an edge and a cape with a hole, bent without stretching; and a tablecloth into a saddle,
+/// which no cloth fits exactly.
+std::vector<SheetScene> sheets();
 
 }  // namespace nuno::scene_library
