@@ -8,7 +8,7 @@
 
 namespace nuno {
 
-/// A cloth known by name, as measured; see docs/materials.md for the sources.
+/// A cloth known by name; docs/materials.md says which of its values were measured, and by whom.
 struct NamedMaterial {
   std::string_view name;
   SheetMaterial cloth;

@@ -111,6 +111,9 @@ struct SheetScene : Scene {
 };
 
 /// Throws InputError if a value breaks its rule; `source` names the file in the message.
+/// A sheet's faces are a single one, which may have holes, of faces that have an area in the
+/// initial shape (quads convex), one or two at every edge, every vertex in one of them. Which way
+/// round a face runs does not matter.
 void validate(const ChainScene& scene, const std::string& source);
 void validate(const SheetScene& scene, const std::string& source);
 
