@@ -45,7 +45,8 @@ struct OptimizeOptions {
   std::string out;
 };
 
-/// A cloth of two meshes thrown with what an animator wants: along a damped morph, at the best gain.
+/// A cloth of two meshes thrown with what an animator wants: along a damped morph, at the best
+/// gain.
 struct ThrowOptions {
   std::string start, target;       ///< mesh files, the same faces in two poses
   double arrival_time = 0;         ///< t₀ [s], > 0

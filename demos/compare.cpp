@@ -163,7 +163,8 @@ ExitStatus compare(const CompareOptions& options) {
     clear_progress();
     if (comparison.divergence) {
       const auto& [backend, flight] = *comparison.divergence;
-      report_divergence(pair.file.path, backend == pair.first->name() ? *pair.first : *pair.second, flight);
+      report_divergence(pair.file.path, backend == pair.first->name() ? *pair.first : *pair.second,
+                        flight);
       status = ExitStatus::diverged;
       continue;
     }
@@ -173,7 +174,8 @@ ExitStatus compare(const CompareOptions& options) {
     comparisons.push_back(std::move(comparison));
   }
   fmt::print(table,
-             "L is the cloth's length, of a sheet √(rest area). Shapes apart: the end shapes of both engines at the best α "
+             "L is the cloth's length, of a sheet √(rest area). Shapes apart: the end shapes of "
+             "both engines at the best α "
              "of native,\ncentroids aligned, mean over the particles.\n");
   if (comparisons.size() > 1) print_summary(table, summarize(comparisons));
   // What is left of a comparison with diverged scenes is still one; without any, it is none.

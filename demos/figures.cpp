@@ -84,8 +84,8 @@ Figure flight_figure(const std::string& name, const std::string& title, const Sc
       .title = title,
       .subtitle = fmt::format("{} particles, α = {} N/m{}: mean error {:.2f} % of the cloth’s "
                               "length, worst particle {:.1f} %",
-                              file.problem.cloth().particles(), shown(gain), how, percent * flight.error.mean,
-                              percent * flight.error.max)};
+                              file.problem.cloth().particles(), shown(gain), how,
+                              percent * flight.error.mean, percent * flight.error.max)};
   return {name, draw_flights({make_flight(file.scene.name, backend, flight)}, options).svg()};
 }
 

@@ -86,8 +86,8 @@ void add_backend(CLI::App& command, std::string& backend) {
       .add_option_function<std::string>(
           "--backend",
           [&](const std::string& text) { backend = word("--backend", text, backend_names); },
-          fmt::format("Engine: {} for chains, {} for sheets",
-                      fmt::join(chain_engines, " or "), fmt::join(sheet_engines, " or ")))
+          fmt::format("Engine: {} for chains, {} for sheets", fmt::join(chain_engines, " or "),
+                      fmt::join(sheet_engines, " or ")))
       ->type_name("NAME")
       ->default_str(backend);
 }
@@ -166,8 +166,8 @@ void add_throw_options(CLI::App& command, ThrowOptions& options) {
       ->default_str(options.backend);
   add_positive(command, "--frames-per-second", "R", options.frames_per_second,
                "Frames of the animation [1/s], > 0");
-  command.get_option("--frames-per-second")->default_str(
-      fmt::format("{}", options.frames_per_second));
+  command.get_option("--frames-per-second")
+      ->default_str(fmt::format("{}", options.frames_per_second));
   command.add_flag("--settle", options.settle, "The cloth comes to rest on the target");
   command.footer(
       "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"

@@ -16,8 +16,8 @@ namespace nuno {
 /// file does not hold such a cloth.
 void require_room(const SceneFile& file, const std::string& out);
 
-/// Searches the gain that the options ask for in this scene, in place of the options' own, and flies
-/// at it.
+/// Searches the gain that the options ask for in this scene, in place of the options' own, and
+/// flies at it.
 ExitStatus optimize(SceneFile file, const OptimizeOptions& options);
 
 /// Flies once, writes the result to `out` and tells people what happened, or why the flight

@@ -25,8 +25,8 @@ ExitStatus throw_cloth(const ThrowOptions& options) {
   scene.arrival = options.settle ? Arrival::settle : Arrival::pass;
   if (!options.material.empty()) scene.cloth = find_material(options.material)->cloth;
   const std::string source = fmt::format("{} to {}", options.start, options.target);
-  SceneFile file = make_scene_file(
-      source, with_meshes(std::move(scene), options.start, options.target, source));
+  SceneFile file =
+      make_scene_file(source, with_meshes(std::move(scene), options.start, options.target, source));
   OptimizeOptions search;
   search.backend = options.backend;
   search.out = out;

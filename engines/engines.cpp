@@ -111,8 +111,8 @@ void require_refinable(const SceneFile& file) {
   constexpr Index most = 128;  // a jacobian takes N times as long as a flight, and N² numbers
   const Index particles = file.problem.cloth().particles();
   if (particles <= most) return;
-  throw InputError(
-      fmt::format("{}: /particles: {} is not <= {}, the most to refine", file.path, particles, most));
+  throw InputError(fmt::format("{}: /particles: {} is not <= {}, the most to refine", file.path,
+                               particles, most));
 }
 
 void require_groups(const SceneFile& file, Index groups) {

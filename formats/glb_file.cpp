@@ -42,8 +42,8 @@ Corners split(const Mesh& mesh, const Points& shape) {
     for (std::size_t k = 0; k < mesh.faces[f].size(); ++k) {
       const Index vertex = mesh.faces[f][k];
       const Index texture = textured ? mesh.texture_corners[f][k] : 0;
-      const auto [at, is_new] = known.try_emplace(
-          {vertex, texture}, static_cast<std::uint32_t>(corners.vertex.size()));
+      const auto [at, is_new] =
+          known.try_emplace({vertex, texture}, static_cast<std::uint32_t>(corners.vertex.size()));
       if (is_new) {
         corners.vertex.push_back(vertex);
         if (textured) corners.texture.push_back(texture);
@@ -92,8 +92,7 @@ class Document {
   }
 
   std::size_t add_vectors(const Floats& values, bool bounded) {
-    Json accessor = {{"componentType", float_type},
-                     {"type", values.rows() == 3 ? "VEC3" : "VEC2"}};
+    Json accessor = {{"componentType", float_type}, {"type", values.rows() == 3 ? "VEC3" : "VEC2"}};
     if (bounded) {
       const Eigen::VectorXf least = values.rowwise().minCoeff(), most = values.rowwise().maxCoeff();
       accessor["min"] = std::vector<float>(least.begin(), least.end());
@@ -177,25 +176,23 @@ void write_glb(std::FILE* file, const std::string& name, const Mesh& mesh,
   Json primitive = {{"attributes", attributes}, {"indices", indices}, {"material", 0}};
   Json weights = Json::array(), names = Json::array();
   for (std::size_t k = 1; k <= targets; ++k) {
-    primitive["targets"].push_back(
-        {{"POSITION", document.add_vectors(shapes.moved(k), true)},
-         {"NORMAL", document.add_vectors(shapes.turned(k), false)}});
+    primitive["targets"].push_back({{"POSITION", document.add_vectors(shapes.moved(k), true)},
+                                    {"NORMAL", document.add_vectors(shapes.turned(k), false)}});
     weights.push_back(0);
     names.push_back(fmt::format("{:.4f} s", times[k]));
   }
-  Json gltf = {
-      {"asset", {{"version", "2.0"}, {"generator", "nuno"}}},
-      {"scene", 0},
-      {"scenes", {{{"nodes", {0}}}}},
-      {"nodes", {{{"name", name}, {"mesh", 0}}}},
-      {"materials",
-       {{{"name", "cloth"},
-         {"doubleSided", true},
-         {"pbrMetallicRoughness",
-          {{"baseColorFactor", {0.55, 0.18, 0.16, 1.0}},
-           {"metallicFactor", 0.0},
-           {"roughnessFactor", 0.8}}}}}},
-      {"meshes", {{{"name", name}, {"primitives", {primitive}}}}}};
+  Json gltf = {{"asset", {{"version", "2.0"}, {"generator", "nuno"}}},
+               {"scene", 0},
+               {"scenes", {{{"nodes", {0}}}}},
+               {"nodes", {{{"name", name}, {"mesh", 0}}}},
+               {"materials",
+                {{{"name", "cloth"},
+                  {"doubleSided", true},
+                  {"pbrMetallicRoughness",
+                   {{"baseColorFactor", {0.55, 0.18, 0.16, 1.0}},
+                    {"metallicFactor", 0.0},
+                    {"roughnessFactor", 0.8}}}}}},
+               {"meshes", {{{"name", name}, {"primitives", {primitive}}}}}};
   std::vector<float> keys(times.begin(), times.end()), values;
   if (targets > 0) {
     gltf["meshes"][0]["weights"] = weights;

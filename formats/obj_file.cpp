@@ -19,7 +19,7 @@ namespace nuno {
 namespace {
 
 constexpr std::uintmax_t largest_file = 256 << 20;  // bytes: millions of vertices
-constexpr std::size_t most_corners = 1000;           // of a face
+constexpr std::size_t most_corners = 1000;          // of a face
 
 /// A place of the file, for messages.
 struct Line {
@@ -134,9 +134,9 @@ struct Reader {
     rest = rest.substr(0, rest.find('#'));
     const std::string_view word = next_word(rest);
     static constexpr std::array<std::string_view, 24> passed_over = {
-        "vn", "vp",  "g",   "o",     "s",      "usemtl", "mtllib",  "l",     "p",       "lod", "mg",
-        "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj", "usemap", "maplib", "cstype",
-        "deg", "end", "parm", "curv", "surf"};
+        "vn",     "vp",     "g",      "o",     "s",        "usemtl",   "mtllib",     "l",
+        "p",      "lod",    "mg",     "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj",
+        "usemap", "maplib", "cstype", "deg",   "end",      "parm",     "curv",       "surf"};
     if (word == "v") {
       read_numbers(rest, 3, line, vertices);
     } else if (word == "vt") {
@@ -177,7 +177,8 @@ Mesh parse_obj(const std::string& text, const std::string& source) {
   }
   if (!joined.empty()) reader.read_line(joined, line);
   Mesh mesh = std::move(reader.mesh);
-  if (mesh.faces.empty()) throw InputError(fmt::format("{}: has no face (f); a mesh is required", source));
+  if (mesh.faces.empty())
+    throw InputError(fmt::format("{}: has no face (f); a mesh is required", source));
   mesh.vertices = Eigen::Map<const Points>(reader.vertices.data(), 3, reader.vertex_count());
   if (reader.all_textured) {
     mesh.texture_coordinates =
@@ -272,13 +273,13 @@ void cut_polygons(Mesh& mesh) {
 void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& pose,
                         const std::string& pose_path) {
   const auto refuse = [&](const std::string& what) {
-    throw InputError(fmt::format("{}: {} as {}: it is no pose of the same mesh",
-                                 pose_path, what, path));
+    throw InputError(
+        fmt::format("{}: {} as {}: it is no pose of the same mesh", pose_path, what, path));
   };
   const auto count = [](const Faces& faces) { return faces.size(); };
   if (pose.vertices.cols() != mesh.vertices.cols()) {
-    refuse(fmt::format("{} vertices are not {}, as many", pose.vertices.cols(),
-                       mesh.vertices.cols()));
+    refuse(
+        fmt::format("{} vertices are not {}, as many", pose.vertices.cols(), mesh.vertices.cols()));
   }
   if (count(pose.faces) != count(mesh.faces)) {
     refuse(fmt::format("{} faces are not {}, as many", pose.faces.size(), mesh.faces.size()));
@@ -292,8 +293,7 @@ void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& p
     throw InputError(fmt::format(
         "{}:{}: the face {} is {} in {}: the vertices stand in another order, or it is no pose of "
         "the same mesh; export both with the order of vertices kept",
-        pose_path, pose.lines[i], from_one(pose.faces[i]), from_one(mesh.faces[i]),
-        path));
+        pose_path, pose.lines[i], from_one(pose.faces[i]), from_one(mesh.faces[i]), path));
   }
 }
 

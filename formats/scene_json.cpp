@@ -11,8 +11,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <set>
 #include <optional>
+#include <set>
 #include <span>
 #include <type_traits>
 #include <vector>

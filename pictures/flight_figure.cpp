@@ -273,7 +273,7 @@ std::vector<Index> stroke_along(const Edges& edges) {
 Points seen(const Points& points) {
   if (points.rows() == 2) return points;
   Eigen::Matrix<double, 2, 3> view;
-  view << std::cos(azimuth), 0, -std::sin(azimuth),               //
+  view << std::cos(azimuth), 0, -std::sin(azimuth),  //
       -std::sin(azimuth) * std::sin(elevation), std::cos(elevation),
       -std::cos(azimuth) * std::sin(elevation);
   return view * points;

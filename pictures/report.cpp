@@ -29,7 +29,7 @@ using Json = nlohmann::ordered_json;
 
 // The page's size: what an eye can follow on a screen, and no more.
 constexpr double most_frames = 60, most_frames_of_sheet = 30;
-constexpr Index most_particles = 64;  // of a chain
+constexpr Index most_particles = 64;    // of a chain
 constexpr double most_positions = 1e7;  // in memory, per flight
 constexpr double position_unit = 1e-4;  // of L
 constexpr std::size_t pareto_to_pick = 8, pareto_to_pick_of_sheet = 2;

@@ -23,7 +23,8 @@ double shape_gap(const Problem& problem, double gain, std::optional<double> box2
 }
 
 Problem inextensible_s_curve() {
-  return make_problem(std::get<ChainScene>(read_scene(NUNO_SCENES "/s-curve-32-inextensible.json")));
+  return make_problem(
+      std::get<ChainScene>(read_scene(NUNO_SCENES "/s-curve-32-inextensible.json")));
 }
 
 TEST(CrossCheck, BothEnginesEndInOneShapeAtTheBestGain) {

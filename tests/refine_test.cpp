@@ -151,7 +151,8 @@ TEST(Refine, LeavesAFlightThatForgetsHowItStarted) {
 
 TEST(Refine, ComesNearerToATargetOutOfReach) {
   // Sharp corners: some of its segments are a third of the cloth's.
-  const Problem problem = make_problem(std::get<ChainScene>(read_scene(NUNO_SCENES "/nuno/n1.json")));
+  const Problem problem =
+      make_problem(std::get<ChainScene>(read_scene(NUNO_SCENES "/nuno/n1.json")));
   const RefineSummary summary = refine(problem, tracking_gain_of(problem), on_native, on_native);
   EXPECT_FALSE(summary.converged);
   EXPECT_LT(summary.flight.error.mean, 0.5 * summary.error_before);

@@ -10,8 +10,8 @@ namespace nuno {
 
 /// A mesh as its file gives it.
 struct Mesh {
-  Points vertices;  ///< [3 × N], m
-  Faces faces;      ///< each of at least 3 corners
+  Points vertices;             ///< [3 × N], m
+  Faces faces;                 ///< each of at least 3 corners
   Points texture_coordinates;  ///< [2 × any]; without columns where the file has none
   /// Of each face's corners, their columns in texture_coordinates; empty where the file has none.
   Faces texture_corners;
@@ -22,8 +22,8 @@ struct Mesh {
 Mesh read_mesh(const std::string& path);
 
 /// Reads Wavefront OBJ: v, vt and f, with any of the forms of an index, from the front or the back.
-/// Groups, materials, normals and the like are passed over; objects of a file are one mesh. `source`
-/// names the text in messages.
+/// Groups, materials, normals and the like are passed over; objects of a file are one mesh.
+/// `source` names the text in messages.
 Mesh parse_obj(const std::string& text, const std::string& source);
 
 /// Cuts every face of more than 4 corners into triangles, as its shape asks for.
