@@ -83,10 +83,11 @@ ExitStatus optimize(const OptimizeOptions& options) {
 }
 
 ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
-  require_room(file, options.out);
+  require_room(file, options.out, options.animation);
   require_groups(file, options.coefficients);
   if (options.refine) require_refinable(file);
   auto backend = make_backend(options.backend, file);
+  require_short_tail(*backend, options.animation.tail);
   std::FILE* const summary = people(options.out);
   if (const std::string words = verdict(assess(*backend)); !words.empty()) {
     fmt::print(summary, "{}\n", words);
@@ -120,7 +121,7 @@ ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
     }
   }
   // If every rollout diverged, the one at the gain it ended on says why.
-  const ExitStatus status = fly(file, *backend, gains, options.out, found);
+  const ExitStatus status = fly(file, *backend, gains, options.out, options.animation, found);
   if (status != ExitStatus::done) return status;
   const double percent = 100 / file.problem.cloth().size;
   if (found.robust_error) {

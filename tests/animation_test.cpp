@@ -130,8 +130,8 @@ TEST(Animation, AsUsdaHasASampleForEachFrameAtItsTime) {
   const std::string text = bytes_of(folder / "a.usda");
   EXPECT_TRUE(text.starts_with("#usda 1.0\n"));
   for (const char* line : {"upAxis = \"Y\"", "metersPerUnit = 1\n", "timeCodesPerSecond = 25\n",
-                           "startTimeCode = 101\n", "endTimeCode = 102.75\n", "def Xform \"_2_triangles\"",
-                           "interpolation = \"faceVarying\""}) {
+                           "startTimeCode = 101\n", "endTimeCode = 102.75\n",
+                           "def Xform \"_2_triangles\"", "interpolation = \"faceVarying\""}) {
     EXPECT_NE(text.find(line), std::string::npos) << line;
   }
   EXPECT_EQ(numbers_after(text, "faceVertexCounts = "), (std::vector<double>{3, 3}));
@@ -147,7 +147,8 @@ TEST(Animation, AsUsdaHasASampleForEachFrameAtItsTime) {
                 static_cast<float>(animation.positions[k].reshaped()[i]));
     }
   }
-  const std::vector<double> bounds = numbers_after(text, "101: ");  // of the extent, the first there
+  const std::vector<double> bounds =
+      numbers_after(text, "101: ");  // of the extent, the first there
   EXPECT_EQ(bounds.front(), 0);
   EXPECT_EQ(bounds.back(), 0);
   EXPECT_EQ(static_cast<float>(bounds[1]), -2.0F);
@@ -155,15 +156,16 @@ TEST(Animation, AsUsdaHasASampleForEachFrameAtItsTime) {
 
 TEST(Animation, ThatCountsFramesArrivesAtAWholeOne) {
   require_animation("a.pc2", 1.2, 25);
-  require_animation("a.glb", 1.2, 24);   // these tell a frame's own time
+  require_animation("a.glb", 1.2, 24);  // these tell a frame's own time
   require_animation("a.usda", 1.2, 24);
   try {
     require_animation("a.pc2", 1.2, 24);
     FAIL() << "28.8 frames";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "--out: a.pc2: counts in whole frames, and 1.2 s are 28.8 frames at 24 per second; "
-                 "arrive at 1.208333333 s");
+    EXPECT_STREQ(
+        error.what(),
+        "--out: a.pc2: counts in whole frames, and 1.2 s are 28.8 frames at 24 per second; "
+        "arrive at 1.208333333 s");
   }
   EXPECT_THROW(require_animation("a.obj", 1, 24), InputError);  // no # for the number
   require_animation("a-#.obj", 1, 24);

@@ -12,11 +12,11 @@ namespace nuno {
 /// A mesh in motion, as animation packages keep one: frames of whole numbers at an even rate.
 struct Animation {
   std::string name;
-  Mesh mesh;                       ///< its vertices are not used: those of the frames take their place
-  double frames_per_second = 24;   ///< [1/s], > 0
-  Index first_frame = 1;           ///< number of the first frame, ≥ 0
-  std::vector<double> times;       ///< of the frames [s], ascending, from 0
-  std::vector<Points> positions;   ///< of the frames, at least one [3 × N each], m
+  Mesh mesh;  ///< its vertices are not used: those of the frames take their place
+  double frames_per_second = 24;  ///< [1/s], > 0
+  Index first_frame = 1;          ///< number of the first frame, ≥ 0
+  std::vector<double> times;      ///< of the frames [s], ascending, from 0
+  std::vector<Points> positions;  ///< of the frames, at least one [3 × N each], m
 };
 
 /// How a file is told to hold an animation: the end of its name.
@@ -37,8 +37,8 @@ void require_animation(const std::string& path, double arrival_time, double fram
 /// Writes the file or files, each whole or not at all. Throws OutputError.
 void write_animation(const std::string& path, const Animation& animation);
 
-/// A chain's shape [2 × N] as a ribbon of `width` [m] along z: vertices [3 × 2N], first those at one
-/// border.
+/// A chain's shape [2 × N] as a ribbon of `width` [m] along z: vertices [3 × 2N], first those at
+/// one border.
 Points ribbon(const Points& shape, double width);
 
 /// The mesh of such a ribbon along this shape: quads, u along the chain and v across.
