@@ -89,8 +89,12 @@ ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
   auto backend = make_backend(options.backend, file);
   require_short_tail(*backend, options.animation.tail);
   std::FILE* const summary = people(options.out);
-  if (const std::string words = verdict(assess(*backend)); !words.empty()) {
+  const Feasibility asked = assess(*backend);
+  if (const std::string words = verdict(asked); !words.empty()) {
     fmt::print(summary, "{}\n", words);
+  } else if (asked.is_sheet) {
+    fmt::print(summary, "The target is a shape that cloth can take: its edges fit to {:.2g} %.\n",
+               100 * asked.length_mismatch);
   }
 
   Optimization found = options.error_limit || options.effort_limit
