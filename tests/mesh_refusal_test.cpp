@@ -375,9 +375,11 @@ TEST_F(SheetRefusal, OfWhatSheetsCannotHaveNamesTheSceneAndTheRule) {
                  "a sheet takes one gain");
   expect_refused({"simulate", sheet, "--alpha", "1,2,3"}, "a.json", sheet + ": /initial: ", "3",
                  "a sheet takes one gain");
-  for (const char* command : {"simulate", "optimize"}) {
-    expect_refused({command, chain}, "a.glb", "--out: ", chain, "a .glb holds a sheet");
-  }
+  expect_refused({"simulate", sheet, "--ribbon-width", "0.1"}, "a.glb", "--ribbon-width: ", sheet,
+                 "is for a chain");
+  expect_refused({"simulate", sheet, "--tail", "1"}, "a.json", "--tail: ", "",
+                 "is for an animation");
+  expect_refused({"simulate", sheet}, "a.obj", "--out: ", "a.obj", "has no # in its name");
 }
 
 TEST_F(SheetRefusal, OfATargetWithoutAreaNamesIt) {
@@ -459,10 +461,10 @@ INSTANTIATE_TEST_SUITE_P(
                  "\"soon\": is one argument too many"},
         BadThrow{"OutputOfNoKnownKind",
                  {"--time", "1", "--out", "flight.fbx"},
-                 "--out: \"flight.fbx\" does not end in .glb or .json"},
+                 "--out: \"flight.fbx\" does not end in .json or .glb, .pc2, .mdd, .usda, .obj"},
         BadThrow{"OutputWithoutKind",
                  {"--time", "1", "--out", "flight"},
-                 "--out: \"flight\" does not end in .glb or .json"},
+                 "--out: \"flight\" does not end in .json or .glb, .pc2, .mdd, .usda, .obj"},
         BadThrow{"OutputEmpty", {"--time", "1", "--out", ""}, "--out: \"\" is not a name"},
         BadThrow{"GainGiven", {"--time", "1", "--alpha", "1"}, "--alpha: is not a known option"},
         BadThrow{"RefineGiven", {"--time", "1", "--refine"}, "--refine: is not a known option"}),
