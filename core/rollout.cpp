@@ -146,6 +146,7 @@ void fly_on(const Backend& backend, double tail, Simulation& cloth, Recorder& re
   const Points no_forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
   const auto last = backend.steps() + static_cast<Index>(std::ceil(tail / h * (1 - 1e-9)));
   for (Index n = backend.steps(); n < last; ++n) {
+    problem.stop_where_asked();
     cloth.step(no_forces);
     const double strain = largest_strain(problem.cloth(), cloth.positions());
     if (!(strain < torn_strain)) return tell_divergence(problem, n + 1, strain, cloth, result);
