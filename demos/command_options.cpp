@@ -85,6 +85,12 @@ void add_limit(CLI::App& command, const char* name, std::optional<double>& limit
       ->type_name("X");
 }
 
+void add_error_limit(CLI::App& command, std::optional<double>& limit) {
+  add_limit(command, "--error-limit", limit,
+            "The gain of least control effort whose error is at most X\n"
+            "of the cloth's length, instead of the one of least error");
+}
+
 void add_optimizer(CLI::App& command, OptimizeOptions& options) {
   command
       .add_option_function<std::string>(
@@ -95,9 +101,7 @@ void add_optimizer(CLI::App& command, OptimizeOptions& options) {
           fmt::format("Search: {}", fmt::join(optimizer_names, " or ")))
       ->type_name("NAME")
       ->default_str(options.optimizer);
-  add_limit(command, "--error-limit", options.error_limit,
-            "The gain of least control effort whose error is at most X\n"
-            "of the cloth's length, instead of the one of least error");
+  add_error_limit(command, options.error_limit);
   add_limit(command, "--effort-limit", options.effort_limit,
             "The gain of least error whose control effort is at most X");
 }
@@ -208,6 +212,7 @@ Action add_throw(CLI::App& command) {
                "Frames of the animation [1/s], > 0");
   command.get_option("--frames-per-second")
       ->default_str(fmt::format("{}", options->frames_per_second));
+  add_error_limit(command, options->error_limit);
   command.add_flag("--settle", options->settle, "The cloth comes to rest on the target");
   command.footer(
       "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"

@@ -61,13 +61,14 @@ struct OptimizeOptions {
 /// A cloth of two meshes thrown with what an animator wants: along a damped morph, at the best
 /// gain.
 struct ThrowOptions {
-  std::string start, target;       ///< mesh files, the same faces in two poses
-  double arrival_time = 0;         ///< t₀ [s], > 0
-  std::string material;            ///< one of named_materials; empty: the default values
-  std::string backend = "native";  ///< one of sheet_engines
-  double frames_per_second = 24;   ///< of the animation [1/s], > 0
-  bool settle = false;             ///< the cloth comes to rest on the target
-  std::string out;                 ///< as of the others
+  std::string start, target;          ///< mesh files, the same faces in two poses
+  double arrival_time = 0;            ///< t₀ [s], > 0
+  std::string material;               ///< one of named_materials; empty: the default values
+  std::string backend = "native";     ///< one of sheet_engines
+  double frames_per_second = 24;      ///< of the animation [1/s], > 0
+  bool settle = false;                ///< the cloth comes to rest on the target
+  std::optional<double> error_limit;  ///< as of the search
+  std::string out;                    ///< as of the others
   AnimationOptions animation;
 };
 

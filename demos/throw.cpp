@@ -32,6 +32,7 @@ ExitStatus throw_cloth(const ThrowOptions& options) {
   OptimizeOptions search;
   search.backend = options.backend;
   search.out = out;
+  search.error_limit = options.error_limit;
   search.animation = options.animation;
   return optimize(std::move(file), search);
 }
