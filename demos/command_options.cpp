@@ -189,8 +189,13 @@ Action add_optimize(CLI::App& command) {
 
 Action add_throw(CLI::App& command) {
   const auto options = std::make_shared<ThrowOptions>();
-  add_file(command, "START", options->start, "Mesh of the cloth as it is (.obj)");
-  add_file(command, "TARGET", options->target, "The same mesh as it should be (.obj)");
+  add_file(command, "START", options->start,
+           "The cloth as it is: a mesh (.obj), or a drawn line (.svg, .obj,\n"
+           ".csv), FILE#ID where there are several");
+  add_file(command, "TARGET", options->target,
+           "The same mesh as it should be, or another line; may be left out where\n"
+           "START is a file with two lines, initial and target");
+  command.get_option("TARGET")->required(false);
   add_positive(command, "--time", "T", options->arrival_time, "Arrival time [s], > 0");
   command.get_option("--time")->required();
   add_flight_out(command, options->out, options->animation);
@@ -204,10 +209,9 @@ Action add_throw(CLI::App& command) {
             }
             options->material = text;
           },
-          fmt::format("Cloth: {}", material_names()))
+          fmt::format("Cloth of a mesh: {}", material_names()))
       ->type_name("M");
-  add_backend(command, options->backend, sheet_engines,
-              fmt::format("Engine: {}", fmt::join(sheet_engines, " or ")));
+  add_any_backend(command, options->backend);
   add_positive(command, "--frames-per-second", "R", options->frames_per_second,
                "Frames of the animation [1/s], > 0");
   command.get_option("--frames-per-second")
