@@ -9,17 +9,15 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <optional>
+#include <ranges>
 #include <string_view>
 
 namespace nuno {
 namespace {
 
-constexpr std::uintmax_t largest_file = 256 << 20;  // bytes: millions of vertices
-constexpr std::size_t most_corners = 1000;          // of a face
+constexpr std::size_t most_corners = 1000;  // of a face
 
 /// A place of the file, for messages.
 struct Line {
@@ -180,6 +178,7 @@ Mesh parse_obj(const std::string& text, const std::string& source) {
   if (mesh.faces.empty())
     throw InputError(fmt::format("{}: has no face (f); a mesh is required", source));
   mesh.vertices = Eigen::Map<const Points>(reader.vertices.data(), 3, reader.vertex_count());
+  mesh.first_number = 1;
   if (reader.all_textured) {
     mesh.texture_coordinates =
         Eigen::Map<const Points>(reader.textures.data(), 2, reader.texture_count());
@@ -187,28 +186,6 @@ Mesh parse_obj(const std::string& text, const std::string& source) {
     mesh.texture_corners.clear();
   }
   return mesh;
-}
-
-Mesh read_mesh(const std::string& path) {
-  std::error_code error;
-  if (!path.ends_with(".obj") && !path.ends_with(".OBJ")) {
-    throw InputError(fmt::format("{}: does not end in .obj", path));
-  }
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{}: is a directory, not a mesh", path));
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading", path));
-  std::string text;
-  std::vector<char> block(1 << 16);
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > largest_file) {
-      throw InputError(fmt::format("{}: is larger than {} MiB", path, largest_file >> 20));
-    }
-  }
-  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", path));
-  return parse_obj(text, path);
 }
 
 std::vector<std::array<Index, 3>> triangulated(const Points& polygon) {
@@ -246,14 +223,17 @@ std::vector<std::array<Index, 3>> triangulated(const Points& polygon) {
 }
 
 void cut_polygons(Mesh& mesh) {
-  Mesh cut{mesh.vertices, {}, mesh.texture_coordinates, {}, {}};
+  Mesh cut = mesh;
+  cut.faces.clear();
+  cut.texture_corners.clear();
+  cut.lines.clear();
   const bool textured = !mesh.texture_corners.empty();
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const std::vector<Index>& face = mesh.faces[f];
     const auto add = [&](auto corners_of) {
       cut.faces.push_back(corners_of(face));
       if (textured) cut.texture_corners.push_back(corners_of(mesh.texture_corners[f]));
-      cut.lines.push_back(mesh.lines[f]);
+      if (!mesh.lines.empty()) cut.lines.push_back(mesh.lines[f]);
     };
     if (face.size() <= 4) {
       add([](const std::vector<Index>& corners) { return corners; });
@@ -268,6 +248,21 @@ void cut_polygons(Mesh& mesh) {
     }
   }
   mesh = std::move(cut);
+}
+
+std::string face_place(const Mesh& mesh, const std::string& path, std::size_t face) {
+  return mesh.lines.empty() ? fmt::format("{}: face {}", path, face)
+                            : fmt::format("{}:{}", path, mesh.lines[face]);
+}
+
+std::string numbers_in_file(const Mesh& mesh, std::vector<Index> face) {
+  for (Index& vertex : face) {
+    if (!mesh.file_vertices.empty()) {  // its first copy's
+      vertex = std::ranges::find(mesh.file_vertices, vertex) - mesh.file_vertices.begin();
+    }
+    vertex += mesh.first_number;
+  }
+  return fmt::format("{}", fmt::join(face, " "));
 }
 
 void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& pose,
@@ -285,15 +280,15 @@ void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& p
     refuse(fmt::format("{} faces are not {}, as many", pose.faces.size(), mesh.faces.size()));
   }
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    if (pose.faces[i] == mesh.faces[i]) continue;
-    const auto from_one = [](std::vector<Index> face) {
-      for (Index& vertex : face) ++vertex;
-      return fmt::format("{}", fmt::join(face, " "));
-    };
+    if (std::ranges::equal(pose.faces[i], mesh.faces[i]) ||
+        std::ranges::equal(pose.faces[i] | std::views::reverse, mesh.faces[i])) {
+      continue;
+    }
     throw InputError(fmt::format(
-        "{}:{}: the face {} is {} in {}: the vertices stand in another order, or it is no pose of "
+        "{}: the face {} is {} in {}: the vertices stand in another order, or it is no pose of "
         "the same mesh; export both with the order of vertices kept",
-        pose_path, pose.lines[i], from_one(pose.faces[i]), from_one(mesh.faces[i]), path));
+        face_place(pose, pose_path, i), numbers_in_file(pose, pose.faces[i]),
+        numbers_in_file(mesh, mesh.faces[i]), path));
   }
 }
 

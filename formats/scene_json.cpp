@@ -382,9 +382,15 @@ std::string to_json(const ChainScene& scene) {
 SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
                        const std::string& source) {
   Mesh start = read_mesh(initial);
-  const Mesh end = read_mesh(target);
+  Mesh end = read_mesh(target);
+  weld_seams(start, end);
   require_same_faces(start, initial, end, target);
   cut_polygons(start);
+  for (const std::string& remark : end.remarks) {
+    if (std::ranges::find(start.remarks, remark) == start.remarks.end()) {
+      start.remarks.push_back(remark);
+    }
+  }
   scene.initial = start.vertices;
   scene.target = end.vertices;
   scene.faces = start.faces;

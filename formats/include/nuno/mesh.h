@@ -15,16 +15,39 @@ struct Mesh {
   Points texture_coordinates;  ///< [2 × any]; without columns where the file has none
   /// Of each face's corners, their columns in texture_coordinates; empty where the file has none.
   Faces texture_corners;
-  std::vector<Index> lines;  ///< of the file, on which each face stands
+  std::vector<Index> lines;  ///< of the file, on which each face stands; empty where it has none
+  Index first_number = 0;    ///< that the file gives to its first vertex
+  /// Whether a vertex of the file has a single texture point and normal, so that exporters write
+  /// one on a seam several times.
+  bool splits_seams = false;
+  /// Of each vertex of the file, in its order, its column in `vertices`, once copies are welded;
+  /// empty where no vertex has copies.
+  std::vector<Index> file_vertices;
+  std::vector<std::string> remarks;  ///< what people should know of how the file was read
 };
 
-/// Reads a mesh by its file's extension (.obj). Throws InputError with file, line, value and rule.
+/// The most that a file may hold: what a cloth of a million particles can need.
+inline constexpr Index most_file_vertices = 6'000'000, most_file_faces = 2'000'000;
+
+/// Reads a mesh by its file's extension: .obj, .ply. Throws InputError with file, place, value and
+/// rule.
 Mesh read_mesh(const std::string& path);
 
 /// Reads Wavefront OBJ: v, vt and f, with any of the forms of an index, from the front or the back.
 /// Groups, materials, normals and the like are passed over; objects of a file are one mesh.
 /// `source` names the text in messages.
 Mesh parse_obj(const std::string& text, const std::string& source);
+
+/// Reads PLY: ascii and binary, of either byte order. The elements `vertex` (x, y, z; texture
+/// coordinates s and t, u and v, or either with texture_ before it) and `face` (vertex_indices)
+/// count, whatever else there is is passed over.
+Mesh parse_ply(const std::string& text, const std::string& source);
+
+/// Joins the copies that exporters write of vertices on seams of texture or normals, the same in
+/// both poses, and remarks on it. Copies are at one place in both, and ends of an edge where just
+/// two faces meet, neither upon the other: so parts that only touch stay apart. Where the files'
+/// faces differ, each pose is welded by itself.
+void weld_seams(Mesh& mesh, Mesh& pose);
 
 /// Cuts every face of more than 4 corners into triangles, as its shape asks for.
 void cut_polygons(Mesh& mesh);
@@ -33,8 +56,12 @@ void cut_polygons(Mesh& mesh);
 /// not convex is cut right: three columns each.
 std::vector<std::array<Index, 3>> triangulated(const Points& polygon);
 
+/// A face for messages: the file and the face's line or number, and its corners' numbers there.
+std::string face_place(const Mesh& mesh, const std::string& path, std::size_t face);
+std::string numbers_in_file(const Mesh& mesh, std::vector<Index> face);
+
 /// Throws InputError unless both meshes have the same faces, so that the one is a pose of the
-/// other; the paths name them in the message.
+/// other; the paths name them in the message. Which way round a face runs does not matter.
 void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& pose,
                         const std::string& pose_path);
 
