@@ -148,8 +148,12 @@ Action add_optimize(CLI::App& command) {
 
 Action add_throw(CLI::App& command) {
   const auto options = std::make_shared<ThrowOptions>();
-  add_file(command, "START", options->start, "Mesh of the cloth as it is (.obj)");
-  add_file(command, "TARGET", options->target, "The same mesh as it should be (.obj)");
+  add_file(command, "START", options->start,
+           "Mesh of the cloth as it is (.obj, .ply, .gltf, .glb)");
+  add_file(command, "TARGET", options->target,
+           "The same mesh as it should be; FILE.glb#NAME is a shape key\n"
+           "(morph target) of that file; none: START's only shape key");
+  command.get_option("TARGET")->required(false);
   add_positive(command, "--time", "T", options->arrival_time, "Arrival time [s], > 0");
   command.get_option("--time")->required();
   add_out(command, options->out, "FILE",

@@ -48,7 +48,8 @@ struct OptimizeOptions {
 /// A cloth of two meshes thrown with what an animator wants: along a damped morph, at the best
 /// gain.
 struct ThrowOptions {
-  std::string start, target;       ///< mesh files, the same faces in two poses
+  /// Mesh files, the same faces in two poses; an empty target is the start's only morph target.
+  std::string start, target;
   double arrival_time = 0;         ///< t₀ [s], > 0
   std::string material;            ///< one of named_materials; empty: the default values
   std::string backend = "native";  ///< one of sheet_engines

@@ -3,6 +3,7 @@
 #include <nuno/scene.h>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,9 +30,14 @@ struct Mesh {
 /// The most that a file may hold: what a cloth of a million particles can need.
 inline constexpr Index most_file_vertices = 6'000'000, most_file_faces = 2'000'000;
 
-/// Reads a mesh by its file's extension: .obj, .ply. Throws InputError with file, place, value and
-/// rule.
+/// Reads a mesh by its file's extension: .obj, .ply, .gltf, .glb. FILE.glb#NAME is the mesh as its
+/// morph target of that name has it, FILE.glb# as its only one has it. Throws InputError with file,
+/// place, value and rule.
 Mesh read_mesh(const std::string& path);
+
+/// The file of such a path, without the morph target; whether files like it can have one.
+std::string mesh_file(const std::string& path);
+bool may_have_morph_targets(const std::string& path);
 
 /// Reads Wavefront OBJ: v, vt and f, with any of the forms of an index, from the front or the back.
 /// Groups, materials, normals and the like are passed over; objects of a file are one mesh.
@@ -42,6 +48,11 @@ Mesh parse_obj(const std::string& text, const std::string& source);
 /// coordinates s and t, u and v, or either with texture_ before it) and `face` (vertex_indices)
 /// count, whatever else there is is passed over.
 Mesh parse_ply(const std::string& text, const std::string& source);
+
+/// Reads glTF 2.0: the first mesh of a .gltf or .glb, all its primitives joined, moved as its node
+/// and those above say; the base shape, or with `target` that morph target on top of it (empty: the
+/// only one). Weights, skins and animations are not applied; a mesh with a skin is refused.
+Mesh read_gltf(const std::string& path, const std::optional<std::string>& target);
 
 /// Joins the copies that exporters write of vertices on seams of texture or normals, the same in
 /// both poses, and remarks on it. Copies are at one place in both, and ends of an edge where just
