@@ -74,8 +74,9 @@ struct Gltf {
   std::string text() const {
     nlohmann::json all = json;
     if (!all.contains("buffers")) {
-      all["buffers"] = {{{"byteLength", buffer.size()},
-                         {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
+      all["buffers"] = {
+          {{"byteLength", buffer.size()},
+           {"uri", std::string("data:application/octet-stream;base64,") + base64(buffer)}}};
     }
     return all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   }
