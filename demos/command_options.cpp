@@ -190,11 +190,12 @@ Action add_optimize(CLI::App& command) {
 Action add_throw(CLI::App& command) {
   const auto options = std::make_shared<ThrowOptions>();
   add_file(command, "START", options->start,
-           "The cloth as it is: a mesh (.obj), or a drawn line (.svg, .obj,\n"
-           ".csv), FILE#ID where there are several");
+           "The cloth as it is: a mesh (.obj, .ply, .gltf, .glb), or a drawn line\n"
+           "(.svg, .obj, .csv), FILE#ID where there are several");
   add_file(command, "TARGET", options->target,
-           "The same mesh as it should be, or another line; may be left out where\n"
-           "START is a file with two lines, initial and target");
+           "The same mesh as it should be, or another line; FILE.glb#NAME is a\n"
+           "shape key (morph target). May be left out where START has a single\n"
+           "shape key, or two lines, initial and target");
   command.get_option("TARGET")->required(false);
   add_positive(command, "--time", "T", options->arrival_time, "Arrival time [s], > 0");
   command.get_option("--time")->required();

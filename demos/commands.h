@@ -62,7 +62,7 @@ struct OptimizeOptions {
 /// the best gain.
 struct ThrowOptions {
   /// Mesh files, the same faces in two poses; or curves, see drawing.h. Without a target, `start`
-  /// is a drawing with two curves called "initial" and "target".
+  /// is a mesh with one morph target, or a drawing with two curves called "initial" and "target".
   std::string start, target;
   double arrival_time = 0;            ///< t₀ [s], > 0
   std::string material;               ///< of a mesh, one of named_materials; empty: default values

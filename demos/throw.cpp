@@ -26,13 +26,18 @@ void ask(const ThrowOptions& options, const std::string& target, Scene& scene) {
 }
 
 AnyScene scene_of_meshes(const ThrowOptions& options, const std::string& source) {
-  if (options.target.empty()) {
-    throw InputError("TARGET: is missing; only a drawing may hold both shapes");
+  std::string target = options.target;
+  if (target.empty()) {
+    if (!may_have_morph_targets(options.start)) {
+      throw InputError(
+          "TARGET: is missing; a START of glTF can hold it as a morph target, a drawing as a line");
+    }
+    target = mesh_file(options.start) + "#";  // its only one
   }
   SheetScene scene;
-  ask(options, options.target, scene);
+  ask(options, mesh_file(target), scene);
   if (!options.material.empty()) scene.cloth = find_material(options.material)->cloth;
-  return with_meshes(std::move(scene), options.start, options.target, source);
+  return with_meshes(std::move(scene), options.start, target, source);
 }
 
 AnyScene scene_of_drawings(const ThrowOptions& options, const std::string& source) {

@@ -70,8 +70,8 @@ Points read_curve(const std::string& curve) {
   if (has_extension(path, ".svg")) return parse_svg(text, path, name);
   if (has_extension(path, ".obj")) return parse_obj_curve(text, path, name);
   if (!name.empty()) {
-    throw InputError(
-        fmt::format("{}: \"{}\" is not a curve of it: a .csv has only one", path, shown(name)));
+    throw InputError(fmt::format("{}: \"{}\" is not a curve of it: a .csv has only one", path,
+                                 shown_text(name)));
   }
   return parse_csv(text, path);
 }

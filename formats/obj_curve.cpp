@@ -76,10 +76,10 @@ const Object& chosen(const ObjLines& lines, const std::string& source, const std
   if (lines.objects.empty()) throw InputError(fmt::format("{}: has no line (l)", source));
   std::vector<std::string> names;
   for (const Object& each : lines.objects) {
-    if (names.size() < 8) names.push_back(shown(each.name));
+    if (names.size() < 8) names.push_back(shown_text(each.name));
   }
   throw InputError(fmt::format("{}: has {} objects with lines{}, not one: \"{}\"{}", source, count,
-                               name.empty() ? "" : fmt::format(" named \"{}\"", shown(name)),
+                               name.empty() ? "" : fmt::format(" named \"{}\"", shown_text(name)),
                                fmt::join(names, "\", \""),
                                names.size() < lines.objects.size() ? ", …" : ""));
 }
@@ -149,8 +149,8 @@ class EdgeChain {
   }
 
   [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError(
-        fmt::format("{}:{}: object \"{}\": {}", source_, object_.line, shown(object_.name), what));
+    throw InputError(fmt::format("{}:{}: object \"{}\": {}", source_, object_.line,
+                                 shown_text(object_.name), what));
   }
 
   const Object& object_;
@@ -173,7 +173,7 @@ Points parse_obj_curve(const std::string& text, const std::string& source,
         fmt::format("{}:{}: object \"{}\": its z goes over {:.4g}, it is not a curve of x and y; "
                     "draw it in the "
                     "front view, and export with y up",
-                    source, object.line, shown(object.name), size.z()));
+                    source, object.line, shown_text(object.name), size.z()));
   }
   return points.topRows(2);
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <numeric>
 #include <optional>
+#include <ranges>
 #include <string_view>
 
 #include "text_file.h"
@@ -112,6 +113,7 @@ Mesh parse_obj(const std::string& text, const std::string& source) {
   if (mesh.faces.empty())
     throw InputError(fmt::format("{}: has no face (f); a mesh is required", source));
   mesh.vertices = Eigen::Map<const Points>(reader.vertices.data(), 3, reader.vertex_count());
+  mesh.first_number = 1;
   if (reader.all_textured) {
     mesh.texture_coordinates =
         Eigen::Map<const Points>(reader.textures.data(), 2, reader.texture_count());
@@ -119,13 +121,6 @@ Mesh parse_obj(const std::string& text, const std::string& source) {
     mesh.texture_corners.clear();
   }
   return mesh;
-}
-
-Mesh read_mesh(const std::string& path) {
-  if (!path.ends_with(".obj") && !path.ends_with(".OBJ")) {
-    throw InputError(fmt::format("{}: does not end in .obj", path));
-  }
-  return parse_obj(read_text(path, "a mesh"), path);
 }
 
 std::vector<std::array<Index, 3>> triangulated(const Points& polygon) {
@@ -163,14 +158,17 @@ std::vector<std::array<Index, 3>> triangulated(const Points& polygon) {
 }
 
 void cut_polygons(Mesh& mesh) {
-  Mesh cut{mesh.vertices, {}, mesh.texture_coordinates, {}, {}, mesh.vertex_lines};
+  Mesh cut = mesh;
+  cut.faces.clear();
+  cut.texture_corners.clear();
+  cut.lines.clear();
   const bool textured = !mesh.texture_corners.empty();
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const std::vector<Index>& face = mesh.faces[f];
     const auto add = [&](auto corners_of) {
       cut.faces.push_back(corners_of(face));
       if (textured) cut.texture_corners.push_back(corners_of(mesh.texture_corners[f]));
-      cut.lines.push_back(mesh.lines[f]);
+      if (!mesh.lines.empty()) cut.lines.push_back(mesh.lines[f]);
     };
     if (face.size() <= 4) {
       add([](const std::vector<Index>& corners) { return corners; });
@@ -188,6 +186,21 @@ void cut_polygons(Mesh& mesh) {
   mesh = std::move(cut);
 }
 
+std::string face_place(const Mesh& mesh, const std::string& path, std::size_t face) {
+  return mesh.lines.empty() ? fmt::format("{}: face {}", path, face)
+                            : fmt::format("{}:{}", path, mesh.lines[face]);
+}
+
+std::string numbers_in_file(const Mesh& mesh, std::vector<Index> face) {
+  for (Index& vertex : face) {
+    if (!mesh.file_vertices.empty()) {  // its first copy's
+      vertex = std::ranges::find(mesh.file_vertices, vertex) - mesh.file_vertices.begin();
+    }
+    vertex += mesh.first_number;
+  }
+  return fmt::format("{}", fmt::join(face, " "));
+}
+
 namespace {
 
 [[noreturn]] void refuse(const Mesh& mesh, const std::string& path, const MeshFault& fault) {
@@ -195,15 +208,14 @@ namespace {
   switch (fault.at) {
     case MeshFault::At::mesh:
       break;
-    case MeshFault::At::face: {
-      std::vector<Index> face = mesh.faces[number];
-      for (Index& vertex : face) ++vertex;  // OBJ counts from 1
-      throw InputError(fmt::format("{}:{}: face {}: {}", path, mesh.lines[number],
-                                   fmt::join(face, " "), fault.what));
-    }
+    case MeshFault::At::face:
+      throw InputError(fmt::format("{}: face {}: {}", face_place(mesh, path, number),
+                                   numbers_in_file(mesh, mesh.faces[number]), fault.what));
     case MeshFault::At::vertex:
-      throw InputError(fmt::format("{}:{}: vertex {}: {}", path, mesh.vertex_lines[number],
-                                   fault.number + 1, fault.what));
+      throw InputError(fmt::format(
+          "{}{}: vertex {}: {}", path,
+          mesh.vertex_lines.empty() ? "" : fmt::format(":{}", mesh.vertex_lines[number]),
+          numbers_in_file(mesh, {fault.number}), fault.what));
   }
   throw InputError(fmt::format("{}: {}", path, fault.what));
 }
@@ -212,7 +224,9 @@ namespace {
 
 void require_sheet(const Mesh& mesh, const std::string& path) {
   require_pose(mesh, path);
-  if (const auto fault = mesh_fault(mesh.vertices, mesh.faces, 1)) refuse(mesh, path, *fault);
+  if (const auto fault = mesh_fault(mesh.vertices, mesh.faces, mesh.first_number)) {
+    refuse(mesh, path, *fault);
+  }
 }
 
 void require_pose(const Mesh& pose, const std::string& path) {
@@ -234,15 +248,15 @@ void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& p
     refuse(fmt::format("{} faces are not {}, as many", pose.faces.size(), mesh.faces.size()));
   }
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    if (pose.faces[i] == mesh.faces[i]) continue;
-    const auto from_one = [](std::vector<Index> face) {
-      for (Index& vertex : face) ++vertex;
-      return fmt::format("{}", fmt::join(face, " "));
-    };
+    if (std::ranges::equal(pose.faces[i], mesh.faces[i]) ||
+        std::ranges::equal(pose.faces[i] | std::views::reverse, mesh.faces[i])) {
+      continue;
+    }
     throw InputError(fmt::format(
-        "{}:{}: the face {} is {} in {}: the vertices stand in another order, or it is no pose of "
+        "{}: the face {} is {} in {}: the vertices stand in another order, or it is no pose of "
         "the same mesh; export both with the order of vertices kept",
-        pose_path, pose.lines[i], from_one(pose.faces[i]), from_one(mesh.faces[i]), path));
+        face_place(pose, pose_path, i), numbers_in_file(pose, pose.faces[i]),
+        numbers_in_file(mesh, mesh.faces[i]), path));
   }
 }
 

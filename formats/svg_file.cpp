@@ -319,7 +319,7 @@ class SvgReader {
             if (!shapes(property) && !is_hiding(property, value)) return;
             element(node).refuse(fmt::format(
                 "a style sheet that sets {} is not read; save with presentation attributes",
-                shown(property)));
+                shown_text(property)));
           });
     }
   }
@@ -334,7 +334,8 @@ class SvgReader {
     ++curves_;
     std::string_view name = node.attribute("inkscape:label").value();
     if (name.empty()) name = node.attribute("id").value();
-    if (!name.empty() && names_.size() < 8 && !inherited.is_used) names_.push_back(shown(name));
+    if (!name.empty() && names_.size() < 8 && !inherited.is_used)
+      names_.push_back(shown_text(name));
     if (wanted_.empty() || (has_wanted_name(node) && !inherited.is_used)) {
       own_.add(node, inherited);
     } else if (inherited.is_named) {
@@ -378,7 +379,7 @@ class SvgReader {
                                    source_, names));
     }
     throw InputError(fmt::format("{}: draws {} paths named \"{}\", not one; its paths: {}", source_,
-                                 found.count, shown(wanted_), names));
+                                 found.count, shown_text(wanted_), names));
   }
 
   Points trace(const Found& found) const {

@@ -87,9 +87,9 @@ std::optional<double> SvgElement::length(const char* attribute, double whole) co
 void SvgElement::refuse(const std::string& what) const {
   const auto offset =
       std::clamp<std::ptrdiff_t>(node.offset_debug(), 0, static_cast<std::ptrdiff_t>(text.size()));
-  std::string name = shown(svg_kind(node));
+  std::string name = shown_text(svg_kind(node));
   if (const std::string_view id = node.attribute("id").value(); !id.empty()) {
-    name += fmt::format(" \"{}\"", shown(id));
+    name += fmt::format(" \"{}\"", shown_text(id));
   }
   throw InputError(fmt::format("{}:{}: {}: {}", source,
                                1 + std::count(text.begin(), text.begin() + offset, '\n'), name,
@@ -97,7 +97,7 @@ void SvgElement::refuse(const std::string& what) const {
 }
 
 void SvgValue::refuse(const std::string& rule) const {
-  element.refuse(fmt::format("{}: \"{}\" {}", attribute, shown(text), rule));
+  element.refuse(fmt::format("{}: \"{}\" {}", attribute, shown_text(text), rule));
 }
 
 double svg_length(const SvgValue& value, double whole) {

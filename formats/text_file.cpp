@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,36 +16,38 @@
 namespace nuno {
 namespace {
 
-constexpr std::uintmax_t largest_file = 256 << 20;            // bytes: millions of vertices
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
 constexpr std::string_view blanks = " \t\r\v\f";
 
 }  // namespace
 
-std::string read_text(const std::string& path, const char* what) {
+std::string read_text(const std::string& path, const char* what, const std::string& name,
+                      std::size_t most) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{}: is a directory, not {}", path, what));
+    throw InputError(fmt::format("{}: is a directory, not {}", name, what));
   }
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading", path));
+  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading", name));
   std::string text;
   std::vector<char> block(1 << 16);
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > largest_file) {
-      throw InputError(fmt::format("{}: is larger than {} MiB", path, largest_file >> 20));
+    if (text.size() > most) {
+      throw InputError(fmt::format("{}: is larger than {} MiB", name, most >> 20));
     }
   }
-  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", path));
+  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", name));
   return text;
 }
 
-std::string shown(std::string_view value) { return printable(std::string(value.substr(0, 60))); }
+std::string shown_text(std::string_view value) {
+  return printable(std::string(value.substr(0, 60)));
+}
 
 void Line::refuse(std::string_view value, const std::string& rule) const {
   value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
-  throw InputError(fmt::format("{}:{}: {} {}", source, number, shown(value), rule));
+  throw InputError(fmt::format("{}:{}: {} {}", source, number, shown_text(value), rule));
 }
 
 std::string_view next_word(std::string_view& rest) {

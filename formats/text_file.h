@@ -10,9 +10,15 @@
 
 namespace nuno {
 
-/// The text of a file. Throws InputError where it cannot be read, or is larger than 256 MiB; `what`
-/// says in messages what it should hold: "a mesh".
-std::string read_text(const std::string& path, const char* what);
+inline constexpr std::size_t largest_file = 256 << 20;  ///< bytes: millions of vertices
+
+/// All of a file. Throws InputError, which begins with `name`, where it cannot be read or is larger
+/// than `most` bytes; `what` says what it should hold: "a mesh".
+std::string read_text(const std::string& path, const char* what, const std::string& name,
+                      std::size_t most = largest_file);
+inline std::string read_text(const std::string& path, const char* what) {
+  return read_text(path, what, path);
+}
 
 /// A place of a file, for messages.
 struct Line {
@@ -24,7 +30,7 @@ struct Line {
 };
 
 /// A value as a message shows it: on one line, cut where it is long.
-std::string shown(std::string_view value);
+std::string shown_text(std::string_view value);
 
 /// Cuts the next word off `rest`; empty at its end.
 std::string_view next_word(std::string_view& rest);
