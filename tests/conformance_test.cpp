@@ -15,7 +15,7 @@
 
 #include "engines.h"
 #include "scene_library.h"
-#include "thrown_sheet.h"
+#include "sheets.h"
 
 namespace nuno {
 namespace {
