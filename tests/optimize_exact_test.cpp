@@ -267,6 +267,31 @@ TEST(JointSearch, FindsTheBestOnABoundThatHoldsOneGain) {
   }
 }
 
+// E = 1 + u⁴ + c·(v − u/2)⁴: where the curvature vanishes, what BFGS has learnt of it misleads, and
+// a descent has to begin anew.
+TEST(JointSearch, GoesDownToABottomWithoutCurvature) {
+  for (const double c : {1, 10, 100}) {
+    for (const double a : {-1.2, -0.95, -0.7, -0.45}) {
+      for (const double b : {0.3, 0.7, 1.1, 1.5}) {
+        const LogFunction flat = {[=](const Vector& x) {
+                                    const double u = x[0] - a, v = x[1] - b - u / 2;
+                                    return 1 + std::pow(u, 4) + c * std::pow(v, 4);
+                                  },
+                                  [=](const Vector& x) -> Vector {
+                                    const double u = x[0] - a, v = x[1] - b - u / 2;
+                                    const double across = 4 * c * std::pow(v, 3);
+                                    return Eigen::Vector2d(4 * std::pow(u, 3) - across / 2, across);
+                                  }};
+        JointObjective objective = objective_of(flat, true);
+        objective.largest_gain = 1e6;
+        const JointSearchSummary found = joint_search(objective, {1, flat.error(Vector::Zero(2))},
+                                                      {.smallest_gain = 1e-6, .valleys = 0});
+        EXPECT_LT(found.stages.back().error, 1 + 1e-6);  // its tolerance
+      }
+    }
+  }
+}
+
 TEST(JointSearch, TriesNoGainBeyondItsBounds) {
   for (const bool has_derivatives : {true, false}) {
     for (const double side : {-1, 1}) {
