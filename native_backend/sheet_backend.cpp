@@ -55,7 +55,7 @@ class SheetBackend final : public Backend {
     DragRecurrence recurrence;
     recurrence.h = time_step();
     for (Index j = 0; j < plan_.substeps; ++j) {
-      const double since = (static_cast<double>(j) + 0.5) * plan_.h;
+      const double since = (static_cast<double>(j) + 0.5) * plan_.substep;
       recurrence.r1 += std::exp(-rate * since) / n;
       recurrence.q1 += kick_time(since) / n;
     }

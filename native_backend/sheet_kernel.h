@@ -14,9 +14,9 @@ namespace nuno::native {
 struct SheetPlan {
   Index particles = 0;
   Index steps = 0;
-  Index substeps = 1;  ///< of the springs, in each step
-  double H = 0;        ///< time step [s]
-  double h = 0;        ///< of the springs: H/substeps [s]
+  Index substeps = 1;    ///< of the springs, in each step
+  double time_step = 0;  ///< H [s]
+  double substep = 0;    ///< h = H/substeps [s], of the springs
 
   std::vector<Index> user_index;           ///< of each particle in the problem [N]
   std::vector<Index> plan_index;           ///< the inverse [N]

@@ -201,7 +201,7 @@ void add_hinges(const Hinges& hinges, SheetPlan& plan) {
     plan.hinge_spring.push_back(hinges.stiffness[h]);
     plan.rest_cosine.push_back(std::cos(hinges.rest_angle[h]));
     plan.rest_sine.push_back(std::sin(hinges.rest_angle[h]));
-    if (damped) plan.hinge_dashpot.push_back(hinges.damping[h] / plan.H);
+    if (damped) plan.hinge_dashpot.push_back(hinges.damping[h] / plan.time_step);
   }
 }
 
@@ -243,15 +243,15 @@ SheetPlan make_sheet_plan(const Problem& problem, const SheetSteps& steps) {
   plan.particles = sheet.particles();
   plan.steps = steps.steps;
   plan.substeps = steps.substeps;
-  plan.H = problem.arrival_time / static_cast<double>(steps.steps);
-  plan.h = plan.H / static_cast<double>(steps.substeps);
+  plan.time_step = problem.arrival_time / static_cast<double>(steps.steps);
+  plan.substep = plan.time_step / static_cast<double>(steps.substeps);
   plan.particle_mass = sheet.particle_mass;
   plan.damping_ratio = problem.damping_ratio;
   plan.relative_mass.assign(sheet.relative_mass.begin(), sheet.relative_mass.end());
-  plan.keep = std::exp(-sheet.drag_rate * plan.h);
-  plan.kick_time = kick_time(sheet.drag_rate, plan.h);
-  plan.first_keep = std::exp(-sheet.drag_rate * plan.h / 2);
-  plan.first_share = kick_time(sheet.drag_rate, plan.h / 2) / plan.kick_time;
+  plan.keep = std::exp(-sheet.drag_rate * plan.substep);
+  plan.kick_time = kick_time(sheet.drag_rate, plan.substep);
+  plan.first_keep = std::exp(-sheet.drag_rate * plan.substep / 2);
+  plan.first_share = kick_time(sheet.drag_rate, plan.substep / 2) / plan.kick_time;
 
   plan.user_index = ordered_particles(sheet);
   plan.plan_index.resize(plan.user_index.size());
@@ -260,10 +260,10 @@ SheetPlan make_sheet_plan(const Problem& problem, const SheetSteps& steps) {
     plan.plan_index[static_cast<std::size_t>(user)] = static_cast<Index>(i);
     const double mass = sheet.particle_mass * sheet.relative_mass[user];
     plan.weight.push_back(mass * sheet.gravity);
-    plan.move.push_back(plan.h * plan.kick_time / mass);
+    plan.move.push_back(plan.substep * plan.kick_time / mass);
     plan.speed.push_back(plan.kick_time / (plan.keep * mass));
   }
-  add_springs(sheet, plan.h, plan);
+  add_springs(sheet, plan.substep, plan);
   add_hinges(sheet.hinges, plan);
   return plan;
 }

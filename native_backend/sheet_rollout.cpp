@@ -46,7 +46,7 @@ void begin_turns(const SheetPlan& plan, const double* rates, SheetState& state) 
     const Vec3<Real> along = v[b] - v[a];
     const Real one = dot(shape.n1, subtract_scaled(shape.t1, along, v[c] - v[a]));
     const Real two = dot(shape.n2, subtract_scaled(shape.t2, along, v[d] - v[a]));
-    state.turn[h] = shape.turn + plan.H * (shape.g1 * one + shape.g2 * two);
+    state.turn[h] = shape.turn + plan.time_step * (shape.g1 * one + shape.g2 * two);
   }
 }
 
@@ -221,7 +221,7 @@ SheetState begin(const SheetPlan& plan, const Points& positions, const Points& v
         const Eigen::Vector3d span = at(state.positions, j) - at(state.positions, i);
         const double length = span.norm();
         const double rate = span.dot(at(rates, j) - at(rates, i)) / length;
-        state.length[e] = length - plan.h * rate;
+        state.length[e] = length - plan.substep * rate;
       }
     }
   }
