@@ -1,5 +1,6 @@
 #include "command_options.h"
 
+#include <nuno/animation.h>
 #include <nuno/engines.h>
 #include <nuno/materials.h>
 
@@ -14,8 +15,6 @@ namespace nuno {
 namespace {
 
 constexpr const char* scene_file = "Scene file (JSON)";
-constexpr const char* result_file =
-    "Result (JSON; - is standard output), or of a sheet an animated mesh (.glb)";
 
 // Below the options of every command that throws scenes.
 constexpr const char* which_reference = R"(What the control pulls towards is the scene's choice:
@@ -35,6 +34,44 @@ void add_any_backend(CLI::App& command, std::string& backend) {
   add_backend(command, backend, backend_names,
               fmt::format("Engine: {} for chains, {} for sheets", fmt::join(chain_engines, " or "),
                           fmt::join(sheet_engines, " or ")));
+}
+
+/// --out for a flight, and how an animation lies in the shot.
+void add_flight_out(CLI::App& command, std::string& out, AnimationOptions& animation) {
+  add_out(command, out, "FILE",
+          fmt::format("Result (JSON; - is standard output), or an animated mesh:\n"
+                      "{}; numbered files have ####.obj",
+                      fmt::join(animation_extensions, ", ")));
+  const auto add_count = [&](const char* name, Index& into, const char* description) {
+    command
+        .add_option_function<std::string>(
+            name,
+            [name, &into](const std::string& text) { into = whole_number(name, text, 0, 1000000); },
+            description)
+        ->type_name("N")
+        ->default_str(fmt::format("{}", into));
+  };
+  add_count("--first-frame", animation.first_frame, "Animation: number of its first frame");
+  add_count("--hold-frames", animation.held_frames,
+            "Animation: frames of the cloth as it is before the throw");
+  command
+      .add_option_function<std::string>(
+          "--tail",
+          [&animation](const std::string& text) {
+            animation.tail = non_negative_number("--tail", text);
+          },
+          "Animation: free flight after the arrival [s], without control")
+      ->type_name("S")
+      ->default_str("0");
+  command
+      .add_option_function<std::string>(
+          "--ribbon-width",
+          [&animation](const std::string& text) {
+            animation.ribbon_width = positive_number("--ribbon-width", text);
+          },
+          "Animation: width of a chain's ribbon [m], > 0; by default a tenth\n"
+          "of its length")
+      ->type_name("W");
 }
 
 /// A limit of the search, a number ≥ 0.
@@ -118,7 +155,7 @@ Action add_simulate(CLI::App& command) {
       ->type_name("A")
       ->default_str(fmt::format("{}", options->gains.rest));
   add_time_step(command, options->time_step);
-  add_out(command, options->out, "FILE", result_file);
+  add_flight_out(command, options->out, options->animation);
   command.footer(which_reference);
   return [options] { return simulate(*options); };
 }
@@ -138,7 +175,7 @@ Action add_optimize(CLI::App& command) {
                    "Prefer a gain whose answer is not fragile: the error is the mean\n"
                    "over five starts, four of them perturbed by 0.1 % of the length");
   add_time_step(command, options->time_step);
-  add_out(command, options->out, "FILE", result_file);
+  add_flight_out(command, options->out, options->animation);
   command.footer(which_reference);
   return [options, &command] {
     require_compatible(*options, command.count("--optimizer") > 0);
@@ -152,8 +189,7 @@ Action add_throw(CLI::App& command) {
   add_file(command, "TARGET", options->target, "The same mesh as it should be (.obj)");
   add_positive(command, "--time", "T", options->arrival_time, "Arrival time [s], > 0");
   command.get_option("--time")->required();
-  add_out(command, options->out, "FILE",
-          "Animated mesh (.glb) or result (.json; - is standard output)");
+  add_flight_out(command, options->out, options->animation);
   command
       .add_option_function<std::string>(
           "--material",

@@ -120,13 +120,18 @@ ExitStatus optimize(const OptimizeOptions& options) {
 }
 
 ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
-  require_room(file, options.out);
+  require_room(file, options.out, options.animation);
   require_groups(file, options.coefficients);
   if (options.refine) require_refinable(file);
   auto backend = make_backend(options.backend, file);
+  require_short_tail(*backend, options.animation.tail);
   std::FILE* const summary = people(options.out);
-  if (const std::string words = verdict(assess(*backend)); !words.empty()) {
+  const Feasibility asked = assess(*backend);
+  if (const std::string words = verdict(asked); !words.empty()) {
     fmt::print(summary, "{}\n", words);
+  } else if (asked.is_sheet) {
+    fmt::print(summary, "The target is a shape that cloth can take: its edges fit to {:.2g} %.\n",
+               100 * asked.length_mismatch);
   }
 
   Optimization found = options.error_limit || options.effort_limit
@@ -154,7 +159,7 @@ ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
     }
   }
   // If every rollout diverged, the one at the gain it ended on says why.
-  const ExitStatus status = fly(file, *backend, gains, options.out, found);
+  const ExitStatus status = fly(file, *backend, gains, options.out, options.animation, found);
   if (status != ExitStatus::done) return status;
   print_search(summary, found, file.problem.cloth().size);
   return ExitStatus::done;

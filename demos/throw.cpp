@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include <nuno/animation.h>
 #include <nuno/materials.h>
 #include <nuno/scene_file.h>
 #include "commands.h"
@@ -13,8 +14,9 @@ namespace nuno {
 
 ExitStatus throw_cloth(const ThrowOptions& options) {
   const std::string& out = options.out;
-  if (!out.empty() && out != "-" && !out.ends_with(".glb") && !out.ends_with(".json")) {
-    throw InputError(fmt::format("--out: \"{}\" does not end in .glb or .json", out));
+  if (!out.empty() && out != "-" && !is_animation(out) && !out.ends_with(".json")) {
+    throw InputError(fmt::format("--out: \"{}\" does not end in .json or {}", out,
+                                 fmt::join(animation_extensions, ", ")));
   }
   SheetScene scene;
   scene.name = std::filesystem::path(options.target).stem().string();
@@ -30,6 +32,7 @@ ExitStatus throw_cloth(const ThrowOptions& options) {
   OptimizeOptions search;
   search.backend = options.backend;
   search.out = out;
+  search.animation = options.animation;
   return optimize(std::move(file), search);
 }
 

@@ -93,14 +93,26 @@ double frames_per_second_of(double points, const SceneFile& file) {
   return points / static_cast<double>(file.problem.cloth().particles()) / file.scene.arrival_time;
 }
 
-void require_few_frames(const SceneFile& file) {
-  const double most = frames_per_second_of(most_points_in_frames, file);
+void require_few_frames(const SceneFile& file, double more) {
+  const double seconds = file.scene.arrival_time + more;
+  const double most =
+      frames_per_second_of(most_points_in_frames, file) * (file.scene.arrival_time / seconds);
   if (file.scene.frames_per_second > most) {
     throw InputError(fmt::format(
         "{}: /frames_per_second: {} is not <= {:.4g}, the most that a result of {} particles over "
         "{} s holds",
-        file.path, file.scene.frames_per_second, most, file.problem.cloth().particles(),
-        file.scene.arrival_time));
+        file.path, file.scene.frames_per_second, most, file.problem.cloth().particles(), seconds));
+  }
+}
+
+void require_short_tail(const Backend& backend, double tail) {
+  const double most =
+      most_particle_steps / static_cast<double>(backend.cloth().particles()) * backend.time_step();
+  if (tail > most) {
+    throw InputError(
+        fmt::format("--tail: {} is not <= {:.4g}: {} particles in steps of {:.3g} s "
+                    "would take too long",
+                    tail, most, backend.cloth().particles(), backend.time_step()));
   }
 }
 

@@ -1,5 +1,6 @@
 #include <nuno/mesh.h>
 
+#include <nuno/mesh_fault.h>
 #include <nuno/output.h>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
@@ -27,11 +29,13 @@ struct Line {
   Index number = 0;
 
   [[noreturn]] void refuse(std::string_view value, const std::string& rule) const {
-    std::string text = printable(std::string(value.substr(0, 60)));
+    value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
+    const std::string text = printable(std::string(value.substr(0, 60)));
     throw InputError(fmt::format("{}:{}: {} {}", source, number, text, rule));
   }
 };
 
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
 constexpr std::string_view blanks = " \t\r\v\f";
 
 /// Cuts the next word off `rest`; empty at its end.
@@ -48,9 +52,14 @@ double number(std::string_view word, const Line& line) {
   if (digits.starts_with('+')) digits.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) return value;  // too small, or refused by the scene
-  if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
+  const bool is_number = end == digits.data() + digits.size() && !word.starts_with("+-");
+  if (is_number && error == std::errc::result_out_of_range) {
+    value = std::strtod(std::string(digits).c_str(), nullptr);  // 0 or infinity
+  } else if (!is_number || error != std::errc() || std::isnan(value)) {
     line.refuse(word, "is not a number");
+  }
+  if (!(std::abs(value) <= largest_scene_number)) {
+    line.refuse(word, fmt::format("is not within ±{}", largest_scene_number));
   }
   return value;
 }
@@ -98,13 +107,13 @@ struct Reader {
   Index vertex_count() const { return static_cast<Index>(vertices.size() / 3); }
   Index texture_count() const { return static_cast<Index>(textures.size() / 2); }
 
-  static void read_numbers(std::string_view rest, std::size_t count, const Line& line,
-                           std::vector<double>& into) {
+  static void read_numbers(std::string_view statement, std::string_view rest, std::size_t count,
+                           const Line& line, std::vector<double>& into) {
     const std::string_view all = rest;
     for (std::size_t k = 0; k < count; ++k) {
       const std::string_view word = next_word(rest);
       if (word.empty()) {
-        line.refuse(all.empty() ? "\"\"" : all, fmt::format("has not {} numbers", count));
+        line.refuse(all.empty() ? statement : all, fmt::format("has not {} numbers", count));
       }
       into.push_back(number(word, line));
     }
@@ -123,6 +132,9 @@ struct Reader {
     std::vector<Index>& face = mesh.faces.emplace_back();
     std::vector<Index>& texture = mesh.texture_corners.emplace_back();
     for (const Corner& each : corners) {
+      if (std::ranges::find(face, each.vertex) != face.end()) {
+        line.refuse(all, fmt::format("has vertex {} twice", each.vertex + 1));
+      }
       face.push_back(each.vertex);
       texture.push_back(each.texture.value_or(0));
       all_textured = all_textured && each.texture;
@@ -138,9 +150,10 @@ struct Reader {
         "p",      "lod",    "mg",     "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj",
         "usemap", "maplib", "cstype", "deg",   "end",      "parm",     "curv",       "surf"};
     if (word == "v") {
-      read_numbers(rest, 3, line, vertices);
+      read_numbers(word, rest, 3, line, vertices);
+      mesh.vertex_lines.push_back(line.number);
     } else if (word == "vt") {
-      read_numbers(rest, 2, line, textures);
+      read_numbers(word, rest, 2, line, textures);
     } else if (word == "f" || word == "fo") {
       read_face(rest, line);
     } else if (!word.empty() && std::ranges::find(passed_over, word) == passed_over.end()) {
@@ -156,7 +169,8 @@ Mesh parse_obj(const std::string& text, const std::string& source) {
   Line line{source};
   std::string joined;  // of lines that end in a backslash
   Index next_line = 1;
-  for (std::size_t start = 0; start < text.size();) {
+  for (std::size_t start = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+       start < text.size();) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
     std::string_view raw(text.data() + start, end - start);
     start = end + 1;
@@ -246,7 +260,7 @@ std::vector<std::array<Index, 3>> triangulated(const Points& polygon) {
 }
 
 void cut_polygons(Mesh& mesh) {
-  Mesh cut{mesh.vertices, {}, mesh.texture_coordinates, {}, {}};
+  Mesh cut{mesh.vertices, {}, mesh.texture_coordinates, {}, {}, mesh.vertex_lines};
   const bool textured = !mesh.texture_corners.empty();
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const std::vector<Index>& face = mesh.faces[f];
@@ -262,12 +276,44 @@ void cut_polygons(Mesh& mesh) {
     for (const auto& places : triangulated(mesh.vertices(Eigen::all, face))) {
       add([&](const std::vector<Index>& corners) {
         std::vector<Index> three;
+        three.reserve(places.size());
         for (const Index place : places) three.push_back(corners[static_cast<std::size_t>(place)]);
         return three;
       });
     }
   }
   mesh = std::move(cut);
+}
+
+namespace {
+
+[[noreturn]] void refuse(const Mesh& mesh, const std::string& path, const MeshFault& fault) {
+  const auto number = static_cast<std::size_t>(fault.number);
+  switch (fault.at) {
+    case MeshFault::At::mesh:
+      break;
+    case MeshFault::At::face: {
+      std::vector<Index> face = mesh.faces[number];
+      for (Index& vertex : face) ++vertex;  // OBJ counts from 1
+      throw InputError(fmt::format("{}:{}: face {}: {}", path, mesh.lines[number],
+                                   fmt::join(face, " "), fault.what));
+    }
+    case MeshFault::At::vertex:
+      throw InputError(fmt::format("{}:{}: vertex {}: {}", path, mesh.vertex_lines[number],
+                                   fault.number + 1, fault.what));
+  }
+  throw InputError(fmt::format("{}: {}", path, fault.what));
+}
+
+}  // namespace
+
+void require_sheet(const Mesh& mesh, const std::string& path) {
+  require_pose(mesh, path);
+  if (const auto fault = mesh_fault(mesh.vertices, mesh.faces, 1)) refuse(mesh, path, *fault);
+}
+
+void require_pose(const Mesh& pose, const std::string& path) {
+  if (const auto fault = vertex_fault(pose.vertices)) refuse(pose, path, *fault);
 }
 
 void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& pose,

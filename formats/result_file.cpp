@@ -183,6 +183,7 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
   head["launch_velocity"] = to_json(rollout.launch_velocity);
   head["target"] = to_json(problem.target);
   head["final"] = to_json(rollout.final);
+  head["final_velocity"] = to_json(rollout.final_velocity);
 
   fmt::print(file, "{{\n");
   for (const auto& item : head.items()) {

@@ -250,7 +250,7 @@ struct FieldReader {
 /// Notes each field's name.
 struct FieldLister {
   std::vector<std::string_view>& names;
-  void operator()(const char* name, const auto&...) const { names.push_back(name); }
+  void operator()(const char* name, const auto&...) const { names.emplace_back(name); }
 };
 
 /// Writes each field that has a value.
@@ -269,7 +269,7 @@ struct FieldWriter {
 template <typename SceneOf>
 void require_fields(const Json& json, const Field& root) {
   std::vector<std::string_view> known = {"nuno_scene", "initial", "target", "cloth"};
-  if constexpr (std::is_same_v<SceneOf, SheetScene>) known.push_back("material");
+  if constexpr (std::is_same_v<SceneOf, SheetScene>) known.emplace_back("material");
   SceneOf scene;
   visit_first(scene, FieldLister{known});
   visit_last(scene, FieldLister{known});
@@ -385,6 +385,8 @@ SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::
   const Mesh end = read_mesh(target);
   require_same_faces(start, initial, end, target);
   cut_polygons(start);
+  require_sheet(start, initial);
+  require_pose(end, target);
   scene.initial = start.vertices;
   scene.target = end.vertices;
   scene.faces = start.faces;

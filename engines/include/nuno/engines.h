@@ -31,8 +31,12 @@ SceneFile read_scene_file(const std::string& path, std::optional<double> time_st
 /// Frames per second with which a flight of this scene holds so many points [1/s].
 double frames_per_second_of(double points, const SceneFile& file);
 
-/// Throws InputError if a result of this scene would hold more frames than memory does.
-void require_few_frames(const SceneFile& file);
+/// Throws InputError if a flight of this scene, with frames for some `more` seconds before it or
+/// after, would hold more of them than memory does.
+void require_few_frames(const SceneFile& file, double more = 0);
+
+/// Throws InputError where so long a flight after arrival [s] would take hours.
+void require_short_tail(const Backend& backend, double tail);
 
 /// Throws InputError for a scene that refine_on cannot take: a sheet, or too large a chain.
 void require_refinable(const SceneFile& file);

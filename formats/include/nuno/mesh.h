@@ -15,7 +15,9 @@ struct Mesh {
   Points texture_coordinates;  ///< [2 × any]; without columns where the file has none
   /// Of each face's corners, their columns in texture_coordinates; empty where the file has none.
   Faces texture_corners;
-  std::vector<Index> lines;  ///< of the file, on which each face stands
+  // Lines of the file, for messages.
+  std::vector<Index> lines;         ///< on which each face stands
+  std::vector<Index> vertex_lines;  ///< on which each vertex stands
 };
 
 /// Reads a mesh by its file's extension (.obj). Throws InputError with file, line, value and rule.
@@ -32,6 +34,13 @@ void cut_polygons(Mesh& mesh);
 /// A polygon of points [3 × n] cut into triangles by its ears (Meisters 1975), so that one that is
 /// not convex is cut right: three columns each.
 std::vector<std::array<Index, 3>> triangulated(const Points& polygon);
+
+/// Throws InputError, with file and line, for a mesh whose faces are no sheet at rest (see
+/// scene.h).
+void require_sheet(const Mesh& mesh, const std::string& path);
+
+/// The same for a pose of it, of which only the vertices count.
+void require_pose(const Mesh& pose, const std::string& path);
 
 /// Throws InputError unless both meshes have the same faces, so that the one is a pose of the
 /// other; the paths name them in the message.
