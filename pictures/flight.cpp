@@ -1,5 +1,7 @@
 #include "pictures/flight.h"
 
+#include <nuno/engines.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,9 +15,8 @@ constexpr double azimuth = 25 * std::numbers::pi / 180, elevation = 20 * std::nu
 }  // namespace
 
 std::string engine_name(std::string_view backend) {
-  if (backend == "box2d") return "Box2D";
-  if (backend == "bullet") return "Bullet";
-  return std::string(backend);
+  const auto known = std::ranges::find(all_engines, backend, &EngineEntry::name);
+  return std::string(known == all_engines.end() ? backend : known->name_for_people);
 }
 
 Flight make_flight(const std::string& scene, const Backend& backend, const Rollout& rollout) {
