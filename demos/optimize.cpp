@@ -76,6 +76,43 @@ bool is_better(const Rollout& a, const Rollout& b, const OptimizeOptions& option
                                         : a.error.mean < b.error.mean;
 }
 
+RefineOptions limits_of(const OptimizeOptions& options) {
+  RefineOptions limits;
+  if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
+  if (options.effort_limit) limits.effort_limit = *options.effort_limit;
+  return limits;
+}
+
+/// Tells people how the answer was found.
+void print_search(std::FILE* summary, const Optimization& found, double length) {
+  const double percent = 100 / length;
+  if (found.robust_error) {
+    fmt::print(summary, "  {:<17} {:.4g} % of the cloth's length, mean of {} perturbed starts\n",
+               "robust error", percent * *found.robust_error, 1 + RobustOptions().perturbations);
+  }
+  const OptimizeSummary& search = found.summary;
+  fmt::print(summary, "  {:<17} {} rollouts in {}{}: {}\n", found.optimizer, search.evaluations,
+             duration(search.seconds),
+             search.status == OptimizeStatus::budget ? ", not reached" : "", search.reason);
+  if (found.joint) {
+    std::vector<double> errors;
+    for (const JointStage& stage : found.joint->stages) errors.push_back(percent * stage.error);
+    fmt::print(
+        summary, "  {:<17} {:.4g} % with 1 … {} of them, {} rollouts in {}: {}\n", "coefficients",
+        fmt::join(errors, ", "), errors.size(), found.joint->evaluations,
+        duration(found.joint->seconds),
+        found.joint->status == OptimizeStatus::budget ? "rounds ran out" : found.joint->reason);
+  }
+  if (found.refinement) {
+    const RefineSummary& refined = *found.refinement;
+    fmt::print(summary, "  {:<17} {}{} rollouts and {} Jacobians, {}: {}\n", "refinement",
+               std::isfinite(refined.error_before)
+                   ? fmt::format("from {:.4g} % in ", percent * refined.error_before)
+                   : "",
+               refined.rollouts, refined.jacobians, duration(refined.seconds), refined.reason);
+  }
+}
+
 }  // namespace
 
 ExitStatus optimize(const OptimizeOptions& options) {
@@ -111,10 +148,7 @@ ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
   }
   clear_progress();
   if (options.refine) {
-    RefineOptions limits;
-    if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
-    if (options.effort_limit) limits.effort_limit = *options.effort_limit;
-    RefineSummary refined = refine_on(options.backend, file, limits);
+    RefineSummary refined = refine_on(options.backend, file, limits_of(options));
     if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.cloth().size)) {
       found.refinement = std::move(refined);
       gains = found.refinement->flight.gains;
@@ -127,32 +161,7 @@ ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
   // If every rollout diverged, the one at the gain it ended on says why.
   const ExitStatus status = fly(file, *backend, gains, options.out, options.animation, found);
   if (status != ExitStatus::done) return status;
-  const double percent = 100 / file.problem.cloth().size;
-  if (found.robust_error) {
-    fmt::print(summary, "  {:<17} {:.4g} % of the cloth's length, mean of {} perturbed starts\n",
-               "robust error", percent * *found.robust_error, 1 + RobustOptions().perturbations);
-  }
-  const OptimizeSummary& search = found.summary;
-  fmt::print(summary, "  {:<17} {} rollouts in {}{}: {}\n", found.optimizer, search.evaluations,
-             duration(search.seconds),
-             search.status == OptimizeStatus::budget ? ", not reached" : "", search.reason);
-  if (found.joint) {
-    std::vector<double> errors;
-    for (const JointStage& stage : found.joint->stages) errors.push_back(percent * stage.error);
-    fmt::print(
-        summary, "  {:<17} {:.4g} % with 1 … {} of them, {} rollouts in {}: {}\n", "coefficients",
-        fmt::join(errors, ", "), errors.size(), found.joint->evaluations,
-        duration(found.joint->seconds),
-        found.joint->status == OptimizeStatus::budget ? "rounds ran out" : found.joint->reason);
-  }
-  if (found.refinement) {
-    const RefineSummary& refined = *found.refinement;
-    fmt::print(summary, "  {:<17} {}{} rollouts and {} Jacobians, {}: {}\n", "refinement",
-               std::isfinite(refined.error_before)
-                   ? fmt::format("from {:.4g} % in ", percent * refined.error_before)
-                   : "",
-               refined.rollouts, refined.jacobians, duration(refined.seconds), refined.reason);
-  }
+  print_search(summary, found, file.problem.cloth().size);
   return ExitStatus::done;
 }
 

@@ -13,6 +13,7 @@
 
 #include <nuno/conditioning.h>
 #include <nuno/progress.h>
+#include "formats/result_json.h"
 #include "studio/studio_rollout.h"
 #include "studio/throw.h"
 
@@ -46,29 +47,18 @@ void append(std::string& text, const std::vector<Points>& shapes, const Turn& tu
 }
 
 Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
-  Json history = Json::array();
-  for (const Evaluation& evaluation : summary.history) {
-    if (!std::isfinite(evaluation.error)) continue;
-    history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
-  }
-  return {{"optimizer", optimizer},
-          {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
-          {"alpha", summary.gain},
-          {"evaluations", summary.evaluations},
-          {"seconds", summary.seconds},
-          {"reason", summary.reason},
-          {"history", history}};
+  Json result = search_head(optimizer, summary);
+  result["alpha"] = summary.gain;
+  result["reason"] = summary.reason;
+  result["history"] = history_of(summary);
+  return result;
 }
 
 Json to_json(const RefineSummary& refinement) {
   Points at_arrival = Points::Zero(2, refinement.flight.final.cols());
   for (const Points& offset : refinement.reference_correction) at_arrival += offset;
-  Json result = {{"status", refinement.converged ? "converged" : "nearest"},
-                 {"largest_offset", at_arrival.colwise().norm().maxCoeff()},
-                 {"rollouts", refinement.rollouts},
-                 {"jacobians", refinement.jacobians},
-                 {"seconds", refinement.seconds},
-                 {"reason", refinement.reason}};
+  Json result = refinement_head(refinement);
+  result["largest_offset"] = at_arrival.colwise().norm().maxCoeff();
   if (std::isfinite(refinement.error_before)) result["error_before"] = refinement.error_before;
   return result;
 }
@@ -79,22 +69,8 @@ std::string drawable(const Throw& done, const Request& request, const Flight& fr
   const Backend& backend = *done.backend;
   const Rollout& flight = done.flight;
   const Problem& problem = backend.problem();
-  Json head = {{"scene", done.file.scene.name},
-               {"backend", backend.name()},
-               {"status", "ok"},
-               {"alpha", flight.gains.rest},
-               {"time_step", backend.time_step()},
-               {"steps", backend.steps()},
-               {"cloth_length", problem.cloth().size},
-               {"target_scale", problem.target_scale},
-               {"error",
-                {{"mean", flight.error.mean},
-                 {"max", flight.error.max},
-                 {"centroid", flight.error.centroid},
-                 {"relative", flight.error.mean / problem.cloth().size}}},
-               {"control_effort", flight.control_effort},
-               {"effort_unit", effort_unit(problem)},
-               {"max_strain", flight.max_strain}};
+  Json head = result_head(done.file.scene.name, backend, flight);
+  head["effort_unit"] = effort_unit(problem);
   if (done.found) {
     OptimizeSummary shown = *done.found;
     shown.history.insert(shown.history.end(), done.between.begin(), done.between.end());

@@ -43,10 +43,34 @@ void require_refinable(const SceneFile& file);
 /// Throws InputError if the scene's particles have too few modes for so many groups of them.
 void require_groups(const SceneFile& file, Index groups);
 
+/// An engine, and what it flies.
+struct EngineEntry {
+  std::string_view name;             ///< for files and options, as Backend::name
+  std::string_view name_for_people;  ///< for figures and pages
+  bool flies_chains, flies_sheets;
+};
+
+/// Every engine there is; the one of the project first.
+inline constexpr std::array<EngineEntry, 3> all_engines = {{{"native", "native", true, true},
+                                                            {"box2d", "Box2D", true, false},
+                                                            {"bullet", "Bullet", false, true}}};
+
+/// The names of `count` engines that are `wanted`.
+template <std::size_t count, typename Wanted>
+consteval std::array<std::string_view, count> names_of(Wanted wanted) {
+  std::array<std::string_view, count> names;
+  std::size_t n = 0;
+  for (const EngineEntry& engine : all_engines) {
+    if (std::invoke(wanted, engine)) names[n++] = engine.name;
+  }
+  return names;
+}
+
 /// The two engines that fly chains, and those that fly sheets; the one of the project first.
-inline constexpr std::array<std::string_view, 2> chain_engines = {"native", "box2d"};
-inline constexpr std::array<std::string_view, 2> sheet_engines = {"native", "bullet"};
-inline constexpr std::array<std::string_view, 3> backend_names = {"native", "box2d", "bullet"};
+inline constexpr auto chain_engines = names_of<2>(&EngineEntry::flies_chains);
+inline constexpr auto sheet_engines = names_of<2>(&EngineEntry::flies_sheets);
+inline constexpr auto backend_names =
+    names_of<all_engines.size()>([](const EngineEntry&) { return true; });
 
 /// Those that fly the problem's cloth.
 inline const std::array<std::string_view, 2>& engines_for(const Problem& problem) {
