@@ -30,7 +30,7 @@ struct Command {
 constexpr std::array<Command, 7> commands = {{
     {"simulate", "Throw the cloth once, at one gain", add_simulate},
     {"optimize", "Find the gain with the smallest error at arrival", add_optimize},
-    {"throw", "Throw a mesh so that it arrives as another pose of itself, as an animated mesh",
+    {"throw", "Throw a mesh or a drawn line so that it arrives as another shape of itself",
      add_throw},
     {"compare", "Both engines on the same scenes, side by side", add_compare},
     {"studio", "Draw both shapes in the browser, throw, watch", add_studio},

@@ -88,6 +88,11 @@ ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains
     }
   }
   print_summary(people(out), file.scene.name, backend, flight, growth);
+  if (file.mesh) {
+    for (const std::string& remark : file.mesh->remarks) {
+      fmt::print(people(out), "  {:<17} {}\n", "mesh", printable(remark));
+    }
+  }
   return ExitStatus::done;
 }
 

@@ -91,11 +91,12 @@ Json to_json(const Optimization& optimization) {
 }
 
 /// Frames one by one: all of them as JSON at once take ten times their own memory.
-void print_frames(std::FILE* file, const Rollout& rollout) {
+void print_frames(std::FILE* file, const Problem& problem, const Rollout& rollout) {
   fmt::print(file, " \"frames\": {{\n  \"times\": {},\n  \"positions\": [",
              on_one_line(rollout.frame_times));
   const char* separator = "\n";
   for (const Points& positions : rollout.frame_positions) {
+    problem.stop_where_asked();
     fmt::print(file, "{}   {}", separator, on_one_line(to_json(positions)));
     separator = ",\n";
   }
@@ -161,7 +162,7 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
     print(file, item.value(), 1);
     fmt::print(file, ",\n");
   }
-  print_frames(file, rollout);
+  print_frames(file, problem, rollout);
   fmt::print(file, "\n}}\n");
 }
 

@@ -12,34 +12,16 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <span>
 #include <type_traits>
 #include <vector>
+
+#include "json_field.h"
 
 namespace nuno {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A place in a scene file, for messages.
-struct Field {
-  const std::string& source;
-  std::string pointer;
-
-  Field child(std::string_view name) const { return {source, fmt::format("{}/{}", pointer, name)}; }
-
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError(fmt::format("{}: {}: {}", source, pointer.empty() ? "/" : pointer, what));
-  }
-};
-
-/// A value as a message shows it: on one line, cut where it is long.
-std::string shown(const Json& value) {
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return text;
-}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -156,36 +138,8 @@ std::string_view word_for(const Words& words, Enum value) {
   return std::ranges::find(words, value, [](const auto& word) { return word.value; })->text;
 }
 
-/// The JSON of `text`; an InputError for what is no JSON or names a field of an object twice.
-Json parse_json(const std::string& text, const std::string& source) {
-  std::vector<std::set<std::string>> names;
-  // A scene is three deep. Far deeper values could not even be shown without running out of stack.
-  constexpr int deepest = 16;
-  const auto watch = [&](int depth, Json::parse_event_t event, Json& value) {
-    if (depth > deepest) {
-      throw InputError(
-          fmt::format("{}: /: not a scene: nested more than {} deep", source, deepest));
-    }
-    if (event == Json::parse_event_t::object_start) {
-      names.emplace_back();
-    } else if (event == Json::parse_event_t::object_end) {
-      names.pop_back();
-    } else if (event == Json::parse_event_t::key &&
-               !names.back().insert(value.get<std::string>()).second) {
-      throw InputError(fmt::format("{}: /: {} stands twice in one object", source, shown(value)));
-    }
-    return true;
-  };
-  try {
-    return Json::parse(text, watch);
-  } catch (const Json::exception& error) {
-    std::string what = error.what();  // "[json.exception.…] message", possibly over several lines
-    if (const auto end = what.find("] "); end != std::string::npos) what = what.substr(end + 2);
-    std::ranges::replace_if(
-        what, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-    throw InputError(fmt::format("{}: /: not JSON: {}", source, what));
-  }
-}
+// A scene is three deep; what is far larger than a million points is none.
+constexpr JsonLimits limits = {"a scene", 16, 50'000'000};
 
 Json to_json(const Points& points) {
   Json array = Json::array();
@@ -354,13 +308,13 @@ std::string text_of(const std::string& path) {
 }  // namespace
 
 AnyScene read_scene(const std::string& path) {
-  const Json json = parse_json(text_of(path), path);
+  const Json json = parse_json<Json>(text_of(path), path, limits);
   if (is_sheet(json)) return read_sheet(json, path);
   return read_chain(json, path);
 }
 
 ChainScene parse_scene(const std::string& text, const std::string& source) {
-  const Json json = parse_json(text, source);
+  const Json json = parse_json<Json>(text, source, limits);
   if (is_sheet(json)) {
     const Field at = Field{source, ""}.child("initial");
     at.refuse("a mesh file is not read here; give the points of a chain");
@@ -382,11 +336,17 @@ std::string to_json(const ChainScene& scene) {
 SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
                        const std::string& source) {
   Mesh start = read_mesh(initial);
-  const Mesh end = read_mesh(target);
+  Mesh end = read_mesh(target);
+  weld_seams(start, end);
   require_same_faces(start, initial, end, target);
   cut_polygons(start);
   require_sheet(start, initial);
   require_pose(end, target);
+  for (const std::string& remark : end.remarks) {
+    if (std::ranges::find(start.remarks, remark) == start.remarks.end()) {
+      start.remarks.push_back(remark);
+    }
+  }
   scene.initial = start.vertices;
   scene.target = end.vertices;
   scene.faces = start.faces;

@@ -36,9 +36,10 @@ void append(std::string& text, const Points& points) {
   text += ']';
 }
 
-void append(std::string& text, const std::vector<Points>& shapes) {
+void append(std::string& text, const std::vector<Points>& shapes, const Turn& turn) {
   text += '[';
   for (std::size_t i = 0; i < shapes.size(); ++i) {
+    turn.check();
     if (i > 0) text += ',';
     append(text, shapes[i]);
   }
@@ -63,7 +64,7 @@ Json to_json(const RefineSummary& refinement) {
 }
 
 /// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.
-std::string drawable(const Throw& done, const std::string& optimizer, const Flight& frames,
+std::string drawable(const Throw& done, const Request& request, const Flight& frames,
                      Clock::time_point start) {
   const Backend& backend = *done.backend;
   const Rollout& flight = done.flight;
@@ -74,7 +75,7 @@ std::string drawable(const Throw& done, const std::string& optimizer, const Flig
     OptimizeSummary shown = *done.found;
     shown.history.insert(shown.history.end(), done.between.begin(), done.between.end());
     std::ranges::sort(shown.history, {}, &Evaluation::gain);
-    head["optimization"] = to_json(shown, optimizer);
+    head["optimization"] = to_json(shown, request.options.optimizer);
   }
   if (done.refined) head["refinement"] = to_json(*done.refined);
   std::string text = dump(head);
@@ -86,9 +87,9 @@ std::string drawable(const Throw& done, const std::string& optimizer, const Flig
   text += ",\"final\":";
   append(text, flight.final);
   text += ",\"frames\":{\"times\":" + dump(frames.times) + ",\"positions\":";
-  append(text, frames.positions);
+  append(text, frames.positions, request.turn);
   text += ",\"forces\":";
-  append(text, frames.forces);
+  append(text, frames.forces, request.turn);
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   fmt::format_to(std::back_inserter(text), "}},\"seconds\":{:.6g}}}", seconds);
   return text;
@@ -101,9 +102,9 @@ Answer throw_answer(const Request& request, std::optional<double> alpha) {
   if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
   Flight frames;
   if (options.frames > 0) {
-    frames = fly(*done.backend, done.flight.gains, options.frames, options.after, request.turn);
+    frames = fly(*done.backend, done.flight.gains, options.frames, options.after);
   }
-  return {.body = drawable(done, options.optimizer, frames, start)};
+  return {.body = drawable(done, request, frames, start)};
 }
 
 /// How many gains a pareto-front tries: fewer of a scene whose rollouts take long.
@@ -152,10 +153,8 @@ Answer pareto_front_answer(const Request& request) {
   const SceneFile file = read_scene(request);
   const auto backend = make_backend(request.options.backend, file);
   require_quick(file, *backend, request.options);
-  request.turn.check();
   Json points = Json::array();
-  for (const ParetoPoint& point :
-       pareto_front(*backend, gains_of_pareto_front(*backend), [&] { request.turn.check(); })) {
+  for (const ParetoPoint& point : pareto_front(*backend, gains_of_pareto_front(*backend))) {
     points.push_back(
         {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
   }

@@ -16,7 +16,7 @@
 #include "engines.h"
 #include "own_engine.h"
 #include "scene_library.h"
-#include "thrown_sheet.h"
+#include "sheets.h"
 
 namespace nuno {
 namespace {

@@ -6,7 +6,6 @@
 #include <nuno/scene_file.h>
 
 #include <array>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -82,20 +81,18 @@ inline const std::array<std::string_view, 2>& engines_for(const Problem& problem
 /// where it does not fly such a cloth, or where one rollout would take hours.
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file);
 
-/// The same with a step that is short enough for `gain` as well.
+/// The same with a step that is short enough for `gain` as well, which messages call `option`.
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
-                                               double gain);
+                                               double gain, std::string_view option = "--alpha");
 
 /// Makes the engine called `name` for the scene's problem corrected elsewhere, see refine.h; `name`
 /// and `file` must outlive it.
 MakeBackend backend_maker(std::string_view name, const SceneFile& file);
 
 /// Refines on the native chain at its tracking gain, and transfers the answer to the engine
-/// called `name`. `before_rollout` is called before each rollout and jacobian; what it throws ends
-/// the work.
+/// called `name`.
 RefineSummary refine_on(std::string_view name, const SceneFile& file,
-                        const RefineOptions& options = {},
-                        const std::function<void()>& before_rollout = {});
+                        const RefineOptions& options = {});
 
 inline constexpr std::array<std::string_view, 2> optimizer_names = {"global", "steepest-descent"};
 
