@@ -292,6 +292,31 @@ TEST(JointSearch, GoesDownToABottomWithoutCurvature) {
   }
 }
 
+// A gain that its bound holds says nothing of the way, however steep the error is along it.
+TEST(JointSearch, GoesDownAlongABound) {
+  constexpr double reach = 3, steep = 1e4;
+  for (const bool has_derivatives : {true, false}) {
+    for (const double side : {-1, 1}) {
+      const LogFunction cliff = {[=](const Vector& x) {
+                                   const double v = x[x.size() - 1] - 1;
+                                   return 1 + steep * (reach - side * x[0]) + v * v;
+                                 },
+                                 [=](const Vector& x) -> Vector {
+                                   return Eigen::Vector2d(-side * steep, 2 * (x[1] - 1));
+                                 }};
+      JointObjective objective = objective_of(cliff, has_derivatives);
+      objective.largest_gain = std::exp(reach);
+      const JointSearchSummary found =
+          joint_search(objective, {1, cliff.error(Vector::Zero(1))},
+                       {.smallest_gain = std::exp(-reach), .valleys = 0});
+      const Vector best = logs(found.stages.back().gains);
+      ASSERT_EQ(best.size(), 2);
+      EXPECT_NEAR(best[0], side * reach, 1e-12);
+      EXPECT_NEAR(best[1], 1, 2e-3) << side << has_derivatives;
+    }
+  }
+}
+
 TEST(JointSearch, TriesNoGainBeyondItsBounds) {
   for (const bool has_derivatives : {true, false}) {
     for (const double side : {-1, 1}) {
