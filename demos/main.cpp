@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <csignal>
 #include <functional>
 #include <span>
 #include <string_view>
@@ -479,8 +478,7 @@ ExitStatus run_and_complain(int argc, char** argv) {
 }  // namespace nuno
 
 int main(int argc, char** argv) {
-  // A reader that leaves early is an output that cannot be written, not a silent death.
-  std::signal(SIGPIPE, SIG_IGN);
+  nuno::handle_signals();
   // Where standard input is closed, a file of ours would get its number, and a program that we run
   // would read it.
   if (fcntl(STDIN_FILENO, F_GETFD) < 0) open("/dev/null", O_RDONLY);
