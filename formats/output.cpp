@@ -145,6 +145,11 @@ std::size_t character_length(std::string_view text) {
   return length;
 }
 
+// When progress is told off a terminal again; all threads work at the same for a person.
+using Clock = std::chrono::steady_clock;
+constexpr Clock::time_point no_work{};
+std::atomic<Clock::time_point> next_line = no_work;
+
 bool at_terminal() { return isatty(fileno(stderr)) != 0; }
 
 }  // namespace
@@ -242,16 +247,18 @@ void show_progress(const std::string& text) {
     std::fputs((progress_start + printable(text)).c_str(), stderr);
     return;
   }
-  using Clock = std::chrono::steady_clock;
   constexpr auto patience = std::chrono::seconds(10), pause = std::chrono::seconds(30);
-  static std::atomic<Clock::time_point> next = Clock::now() + patience;
-  Clock::time_point due = next;
   const auto now = Clock::now();
-  if (now < due || !next.compare_exchange_strong(due, now + pause)) return;
-  note(text);
+  Clock::time_point due = next_line;
+  if (due == no_work) {
+    next_line = now + patience;
+  } else if (now >= due && next_line.compare_exchange_strong(due, now + pause)) {
+    std::fputs((printable(text) + '\n').c_str(), stderr);
+  }
 }
 
 void clear_progress() {
+  next_line = no_work;
   if (at_terminal()) std::fputs(progress_start, stderr);
 }
 
