@@ -8,7 +8,6 @@
 #include <nuno/scene.h>
 
 #include <array>
-#include <csignal>
 #include <utility>
 #include <vector>
 
@@ -100,8 +99,7 @@ ExitStatus run_and_complain(int argc, char** argv) {
 }  // namespace nuno
 
 int main(int argc, char** argv) {
-  // A reader that leaves early is an output that cannot be written, not a silent death.
-  std::signal(SIGPIPE, SIG_IGN);
+  nuno::handle_signals();
   // Where standard input is closed, a file of ours would get its number, and a program that we run
   // would read it.
   if (fcntl(STDIN_FILENO, F_GETFD) < 0) open("/dev/null", O_RDONLY);

@@ -134,9 +134,11 @@ ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
                100 * asked.length_mismatch);
   }
 
-  Optimization found = options.error_limit || options.effort_limit
-                           ? search_front(options, file, *backend)
-                           : search(options, file, *backend);
+  Optimization found = [&] {
+    const LongWork told(*backend, file.scene.name, flights_of_search(*backend));
+    return options.error_limit || options.effort_limit ? search_front(options, file, *backend)
+                                                       : search(options, file, *backend);
+  }();
   Gains gains = found.summary.gain;
   double error = found.summary.error;
   if (options.coefficients > 1) {

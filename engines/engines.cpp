@@ -4,6 +4,7 @@
 
 #include <nuno/box2d.h>
 #include <nuno/bullet.h>
+#include <nuno/input.h>
 #include <nuno/native.h>
 
 #include <algorithm>
@@ -86,7 +87,7 @@ SceneFile read_scene_file(const std::string& path, std::optional<double> time_st
       replace(std::get<SheetInput>(scene).scene);
     }
   }
-  return make_scene_file(path, std::move(scene));
+  return make_scene_file(name_of_input(path), std::move(scene));
 }
 
 double frames_per_second_of(double points, const SceneFile& file) {

@@ -1,5 +1,7 @@
 #include "pictures/drawing.h"
 
+#include <nuno/output.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -126,45 +128,18 @@ double text_width(std::string_view text, std::string_view style) {
 
 std::string xml_text(std::string_view text) {
   std::string result;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    std::size_t length = byte < 0x80   ? 1
-                         : byte < 0xc2 ? 0
-                         : byte < 0xe0 ? 2
-                         : byte < 0xf0 ? 3
-                         : byte < 0xf5 ? 4
-                                       : 0;
-    bool valid = length > 0 && i + length <= text.size();
-    for (std::size_t k = 1; valid && k < length; ++k) {
-      valid = (static_cast<unsigned char>(text[i + k]) & 0xc0) == 0x80;
-    }
-    // Overlong forms, surrogates, and code points that XML forbids.
-    if (valid && length == 3) {
-      const auto next = static_cast<unsigned char>(text[i + 1]);
-      valid = !(byte == 0xe0 && next < 0xa0) && !(byte == 0xed && next > 0x9f) &&
-              !(byte == 0xef && next == 0xbf && static_cast<unsigned char>(text[i + 2]) > 0xbd);
-    }
-    if (valid && length == 4) {
-      const auto next = static_cast<unsigned char>(text[i + 1]);
-      valid = !(byte == 0xf0 && next < 0x90) && !(byte == 0xf4 && next > 0x8f);
-    }
-    if (!valid) {
-      result += "\xef\xbf\xbd";
-      length = 1;
-    } else if (byte < ' ' || byte == 0x7f) {
-      result += ' ';
-    } else if (byte == '&') {
+  for (const char c : printable(std::string(text))) {
+    if (c == '&') {
       result += "&amp;";
-    } else if (byte == '<') {
+    } else if (c == '<') {
       result += "&lt;";
-    } else if (byte == '>') {
+    } else if (c == '>') {
       result += "&gt;";
-    } else if (byte == '"') {
+    } else if (c == '"') {
       result += "&quot;";
     } else {
-      result += text.substr(i, length);
+      result += c;
     }
-    i += length;
   }
   return result;
 }

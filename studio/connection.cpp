@@ -27,37 +27,13 @@ using asio::ip::tcp;
 using namespace std::chrono_literals;
 
 // How long a client may take; all are on this machine.
-constexpr std::chrono::milliseconds idle_patience = 20s;
+constexpr std::chrono::milliseconds idle_patience = 10s;
 constexpr std::chrono::milliseconds head_patience = 5s;  // from its first byte to its last
 constexpr std::chrono::milliseconds body_patience = 5s;  // the same
 constexpr std::chrono::milliseconds leave_patience = 2s;
 constexpr std::size_t slowest_reader = 1 << 20;  // bytes a second, after head_patience
 
 constexpr std::size_t most_drained = 16 << 20;  // bytes
-
-template <typename Fields>
-Head head_of(const Fields& fields) {
-  const auto text = [](auto view) { return std::string(view.data(), view.size()); };
-  const auto all = [&](http::field name) {
-    std::vector<std::string> values;
-    const auto range = fields.equal_range(name);
-    for (auto each = range.first; each != range.second; ++each) {
-      values.push_back(text(each->value()));
-    }
-    return values;
-  };
-  const auto joined = [&](http::field name) {
-    return fmt::format("{}", fmt::join(all(name), ", "));
-  };
-  return {text(fields.method_string()),
-          text(fields.target()),
-          all(http::field::host),
-          all(http::field::origin),
-          joined(http::field::content_type),
-          joined(http::field::content_encoding),
-          joined(http::field::transfer_encoding),
-          fields.count(http::field::content_length) > 0};
-}
 
 bool expects_continue(const http::fields& fields) {
   return boost::beast::iequals(fields[http::field::expect], "100-continue");
@@ -99,6 +75,29 @@ std::string head_text(const Answer& answer, bool stays) {
 }
 
 }  // namespace
+
+Head head_of(const http::request_header<>& fields) {
+  const auto text = [](auto view) { return std::string(view.data(), view.size()); };
+  const auto all = [&](http::field name) {
+    std::vector<std::string> values;
+    const auto range = fields.equal_range(name);
+    for (auto each = range.first; each != range.second; ++each) {
+      values.push_back(text(each->value()));
+    }
+    return values;
+  };
+  const auto joined = [&](http::field name) {
+    return fmt::format("{}", fmt::join(all(name), ", "));
+  };
+  return {text(fields.method_string()),
+          text(fields.target()),
+          all(http::field::host),
+          all(http::field::origin),
+          joined(http::field::content_type),
+          joined(http::field::content_encoding),
+          joined(http::field::transfer_encoding),
+          fields.count(http::field::content_length) > 0};
+}
 
 Connection::Connection(tcp::socket socket, Site& site, Workers& workers, Clients& clients)
     : socket_(std::move(socket)),

@@ -19,6 +19,8 @@ namespace nuno::studio {
 
 class Clients;
 
+Head head_of(const boost::beast::http::request_header<>& fields);
+
 /// One client: reads a request, has it answered, and so on until one of the two ends it. All of it
 /// is done by the thread that runs the socket's loop; whatever a client does or leaves, no step
 /// waits for it, and each has a deadline.

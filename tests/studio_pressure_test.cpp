@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -10,6 +12,7 @@
 #include <iterator>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -225,6 +228,64 @@ TEST_F(StudioUnderPressure, KeepsFilesAndMemoryOfManyClientsThatNeverRead) {
   (void)until_at_rest();
   for (int i = 0; i < 100 && open_files() > files; ++i) std::this_thread::sleep_for(100ms);
   EXPECT_LE(open_files(), files);
+}
+
+TEST_F(StudioUnderPressure, BearsFiveHundredClientsOfTheWorstKind) {
+  const std::string large = post_text("/api/simulate?alpha=0.1&frames=2000&after=1.9", small_scene);
+  for (int i = 0; i < 3; ++i) (void)exchange(large);
+  const double before = memory();
+  const std::size_t files = open_files();
+  double longest = 0, most = before;
+  const auto ask = [&] {
+    const auto start = Clock::now();
+    EXPECT_EQ(status_of(post("/api/optimize?page=friend", small_scene)), 200);
+    longest = std::max(longest, std::chrono::duration<double>(Clock::now() - start).count());
+    most = std::max(most, memory());
+  };
+  auto silent = connections(125, "");
+  ask();
+  const auto half = connections(125, head("GET /", "X: "));
+  ask();
+  const auto deaf = connections(125, large);
+  ask();
+  connections(125, post_text("/api/optimize?backend=box2d", long_scene));  // gone in mid-work
+  ask();
+  for (int i = 0; i < 10; ++i) {  // dribbling
+    for (const auto& client : half) client->send("x");
+    std::this_thread::sleep_for(100ms);
+    ask();
+  }
+  const auto start = Clock::now();
+  while (open_files() > files && Clock::now() - start < 60s) std::this_thread::sleep_for(100ms);
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  std::printf(
+      "500 clients: another page waited %.3f s at most; memory %+.1f MB at most, %+.1f MB after; "
+      "nothing of them left after %.1f s\n",
+      longest, (most - before) / 1e6, (memory() - before) / 1e6, seconds);
+  EXPECT_LT(longest, 20);
+  EXPECT_LT(memory(), before + 50e6);
+  EXPECT_LE(open_files(), files) << "although all are still there";
+  EXPECT_LT(until_at_rest(), 10);
+}
+
+TEST_F(StudioUnderPressure, KeepsItsMemoryAndFilesOverTwoThousandThrows) {
+  const auto throws = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      const std::string page = i % 2 ? "&page=a" : "&page=b";
+      EXPECT_EQ(status_of(post("/api/optimize?frames=100" + page, small_scene)), 200);
+      if (i % 400 == 0) {
+        EXPECT_EQ(status_of(post("/api/report", small_scene)), 200);
+        EXPECT_EQ(status_of(post("/api/result", small_scene)), 200);
+      }
+    }
+  };
+  throws(400);
+  const double before = memory();
+  const std::size_t files = open_files();
+  throws(1600);
+  std::printf("2000 throws: memory %+.1f MB over the last 1600\n", (memory() - before) / 1e6);
+  EXPECT_LT(memory(), before + 8e6);
+  EXPECT_LE(open_files(), files + 1);
 }
 
 TEST_F(StudioUnderPressure, SpeaksHttp) {
