@@ -24,8 +24,6 @@ namespace {
 //     t₀/2000   3.5e-5, 4.9e-4, 31 ms    3.5e-5, 3.1e-4, 41 ms    3.6e-5, 3.9e-4,  63 ms
 //     t₀/4000   1.8e-5, 4.9e-4, 61 ms    2.6e-5, 2.4e-4, 74 ms    4.2e-5, 3.1e-4, 108 ms
 // 60 scenes that had no say in any choice here give 6.0e-5, 4.9e-4 at t₀/2000 and 16 iterations.
-// More steps cost centroid: its rounding grows with their number, 5e-5 of the cloth's length at
-// t₀/2000, 2e-4 at t₀/4000, 4e-4 at t₀/8000 (s-curve without control, where it is largest).
 // The seeded family asks for 1e-3 and 5e-3: t₀/1000 and 8 iterations leave a margin of five, at a
 // third of the time of t₀/2000 and 16 (docs/two-engines.md).
 // All that is of explicit hinges, at h²ω² ≤ ½. Implicit ones take t₀/1000 where those took up to

@@ -253,7 +253,7 @@ TEST(NativeChain, NeedsNoSmallerStepForMoreParticles) {
   }
 }
 
-// From 800 steps on, where the thread's own waves are resolved; at the default, 400, all that is
+// From 1000 steps on, where the thread's own waves are resolved; at the default, 400, all that is
 // left is 1e-5 of L.
 TEST(NativeChain, ImplicitHingesAreOfSecondOrder) {
   for (const Index particles : {300, 1000}) {
@@ -264,7 +264,7 @@ TEST(NativeChain, ImplicitHingesAreOfSecondOrder) {
       EXPECT_EQ(backend->steps(), steps);
       return rollout(*backend, gain).final;
     };
-    const Points coarse = arrive(800), middle = arrive(1600), fine = arrive(3200);
+    const Points coarse = arrive(1000), middle = arrive(2000), fine = arrive(4000);
     const double order =
         std::log2(arrival_error(coarse, middle).mean / arrival_error(middle, fine).mean);
     EXPECT_NEAR(order, 2, 0.2) << particles;
