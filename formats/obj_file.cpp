@@ -9,7 +9,6 @@
 #include <array>
 #include <numeric>
 #include <optional>
-#include <ranges>
 #include <string_view>
 
 #include "text_file.h"
