@@ -9,7 +9,6 @@
 #include <array>
 #include <numeric>
 #include <optional>
-#include <ranges>
 #include <string_view>
 
 #include "text_file.h"
@@ -248,8 +247,9 @@ void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& p
     refuse(fmt::format("{} faces are not {}, as many", pose.faces.size(), mesh.faces.size()));
   }
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    if (std::ranges::equal(pose.faces[i], mesh.faces[i]) ||
-        std::ranges::equal(pose.faces[i] | std::views::reverse, mesh.faces[i])) {
+    const auto& face = mesh.faces[i];
+    if (std::ranges::equal(pose.faces[i], face) ||
+        std::equal(pose.faces[i].rbegin(), pose.faces[i].rend(), face.begin(), face.end())) {
       continue;
     }
     throw InputError(fmt::format(
