@@ -14,7 +14,6 @@
 #include <mutex>
 #include <stop_token>
 #include <system_error>
-#include <utility>
 
 namespace nuno {
 
@@ -44,27 +43,35 @@ double seconds_of_flight(const Backend& backend) {
   return seconds_since(start) * steps / static_cast<double>(done);
 }
 
-void tell(std::stop_token stop, const std::string& label, double expected) {
-  constexpr auto pause = std::chrono::seconds(30);
+void tell(std::stop_token stop, const std::string& announcement, const std::string& label,
+          double expected) {
+  using std::chrono::seconds;
+  constexpr auto settled = seconds(2), pause = seconds(30);  // what diverges, mostly does at once
   const auto start = Clock::now();
   std::mutex mutex;
   std::condition_variable_any ended;
   std::unique_lock lock(mutex);
-  while (!ended.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
+  const auto goes_on_for = [&](seconds time) {
+    return !ended.wait_for(lock, stop, time, [&] { return stop.stop_requested(); });
+  };
+  if (goes_on_for(settled)) note(announcement);
+  while (!stop.stop_requested() && goes_on_for(pause)) {
     note(fmt::format("{}: {:.0f} s of about {:.0f}", label, seconds_since(start), expected));
   }
 }
 
 }  // namespace
 
-LongWork::LongWork(const Backend& backend, std::string label, double flights) {
+LongWork::LongWork(const Backend& backend, const std::string& label, double flights) {
   constexpr double patience = 10;  // seconds in which nobody asks
   const double expected = flights * seconds_of_flight(backend);
   if (!(expected > patience)) return;
-  note(fmt::format("{}: this takes about {:.0f} s on {}", label, expected, backend.name()));
+  const std::string announcement =
+      fmt::format("{}: this takes about {:.0f} s on {}", label, expected, backend.name());
   try {
-    teller_ = std::jthread(tell, std::move(label), expected);
+    teller_ = std::jthread(tell, announcement, label, expected);
   } catch (const std::system_error&) {  // the machine has no thread for it
+    note(announcement);
   }
 }
 

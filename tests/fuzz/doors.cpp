@@ -232,7 +232,7 @@ bool enter(Door door, const std::string& input) {
         return enter_page(input);
     }
   } catch (const InputError& error) {
-    require_text(error.what());
+    require_text(printable(error.what()));  // as people see it: a name may hold any byte
   }
   return false;
 }

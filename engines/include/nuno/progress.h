@@ -18,7 +18,7 @@ void report_divergence(const std::string& scene_path, const Backend& backend,
 class LongWork {
  public:
   /// As much work as `flights` of the backend's, one after another; it times a few steps of one.
-  LongWork(const Backend& backend, std::string label, double flights);
+  LongWork(const Backend& backend, const std::string& label, double flights);
 
  private:
   std::jthread teller_;
