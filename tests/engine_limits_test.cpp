@@ -51,6 +51,27 @@ INSTANTIATE_TEST_SUITE_P(All, EngineLimits,
                                          bullet_engine),
                          [](const auto& engine) { return std::string(engine.param.name); });
 
+// Blown up a hundredfold, so slack that nothing else asks for short steps.
+TEST(BulletSteps, AreAsShortAsALaunchOfHalfASizeEach) {
+  const scene_library::FlatMesh mesh = scene_library::grid(1, 1, 4, 4);
+  SheetScene scene;
+  scene.arrival_time = 1;
+  scene.initial = mesh.vertices;
+  scene.target = 100 * mesh.vertices;
+  scene.target_length = TargetLength::as_drawn;
+  scene.faces = mesh.faces;
+  scene.cloth = {.air_drag = 0,
+                 .stretch_stiffness = 1e-9,
+                 .stretch_damping = 0,
+                 .shear_stiffness = 0,
+                 .shear_damping = 0,
+                 .bending_stiffness = 0};
+  const auto backend = make_bullet(make_problem(scene), 1);
+  const double fastest = 99 * std::sqrt(0.5);  // of a corner [m/s]; L is 1 m
+  EXPECT_LE(backend->time_step() * fastest, 0.5);
+  EXPECT_GT(backend->time_step() * fastest, 0.49);
+}
+
 // The kernels of the batch have a damping of their own.
 TEST(NativeDamping, HasTheSameBitsInTheBatchAndStepByStepAtAnyRatio) {
   for (const Reference reference : {Reference::hold, Reference::morph}) {

@@ -89,6 +89,42 @@ TEST(Assessment, KnowsHowTheLaunchStretches) {
   EXPECT_EQ(result.time_step, 0.25);
 }
 
+/// Two triangles at an edge along z, folded up by `angle`.
+Points folded(double angle) {
+  return Points{{0, 0, -1, std::cos(angle)}, {0, 0, 0, std::sin(angle)}, {1, -1, 0, 0}};
+}
+
+Problem folding(double from, double to) {
+  Problem problem;
+  problem.form = make_sheet(folded(from), {{0, 1, 2}, {1, 0, 3}}, {}, Rest::initial, 0);
+  problem.target = folded(to);
+  problem.arrival_time = 1;
+  return problem;
+}
+
+TEST(Assessment, OfAFoldThroughHalfATurnTakesTheShorterWay) {
+  EXPECT_NEAR(assessed(folding(0.1, 1.3)).folding, 1.2, 1e-12);
+  EXPECT_NEAR(assessed(folding(-0.5, 0.5)).folding, 1, 1e-12);
+  EXPECT_NEAR(assessed(folding(pi - 0.2, -pi + 0.3)).folding, 0.5, 1e-12);
+}
+
+// A sheet drawn out to 1.5 times its size in 1 s stretches by half a size a second: c = √(S/ρ).
+TEST(Assessment, KnowsHowTheLaunchStretchesASheet) {
+  Problem problem = folding(0, 0);
+  problem.target *= 1.5;
+  const Feasibility result = assessed(problem);
+  const SheetMaterial cloth;
+  const double speed = std::sqrt(cloth.stretch_stiffness / cloth.areal_density);
+  EXPECT_NEAR(result.launch_stretching, 0.5, 1e-12);
+  EXPECT_NEAR(result.launch_strain, 0.5 * std::sqrt(2) / speed, 1e-12);  // both areas sum to 2 m²
+  EXPECT_NEAR(result.length_mismatch, 0.5, 1e-12);
+  EXPECT_NEAR(result.border.too_long, 0.5, 1e-12);
+  EXPECT_NEAR(result.inside.too_long, 0.5, 1e-12);
+  problem.target /= 3;
+  EXPECT_NEAR(assessed(problem).inside.too_short, 0.5, 1e-12);
+  EXPECT_NEAR(assessed(problem).border.too_short, 0.5, 1e-12);
+}
+
 TEST(Assessment, CountsTurnsAgainstTheMean) {
   // Segments that end at 0, 1 … 4 times a turn to one side: the mean turns by twice that.
   for (const double turn : {0.3, 2.5}) {

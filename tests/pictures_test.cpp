@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
+#include "pictures/drawn_result.h"
 #include "pictures/flight_figure.h"
 #include "pictures/summary.h"
+#include "temporary_folder.h"
 
 namespace nuno::figures {
 namespace {
@@ -116,6 +119,29 @@ TEST(Stroke, GoesOverEveryEdgeAndNoOther) {
     EXPECT_TRUE(known) << a << ' ' << b;
   }
   for (const int times : seen) EXPECT_GE(times, 1);
+}
+
+TEST(ReadResult, NamesAFaceOfAVertexThatIsNotThere) {
+  const TemporaryFolder folder;
+  const std::string path = (folder / "sheet.json").string();
+  const auto complaint = [&](const std::string& corner) -> std::string {
+    std::ofstream(path) << R"({"nuno_result": 1, "kind": "sheet", "scene": "s", "backend": "native",
+      "alpha": 1, "size": 1, "error": {"mean": 0, "max": 0}, "target": [[0,0,0],[1,0,0],[0,0,1]],
+      "final": [[0,0,0],[1,0,0],[0,0,1]], "faces": [[0, 1, )" +
+                               corner + R"(]], "frames": {"times": [0, 1],
+      "positions": [[[0,0,0],[1,0,0],[0,0,1]], [[0,0,0],[1,0,0],[0,0,1]]]}})";
+    try {
+      EXPECT_EQ(read_result(path).positions.size(), 2u);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(complaint("2"), "");
+  for (const std::string corner : {"3", "-1", "1.5"}) {
+    EXPECT_EQ(complaint(corner),
+              path + ": /faces/0/2: " + corner + " is not a whole number within 0 … 2");
+  }
 }
 
 TEST(Duration, IsInTheUnitThatAPersonReads) {

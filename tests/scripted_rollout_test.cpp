@@ -166,6 +166,23 @@ TEST(ScriptedRollout, StartsWithTheLaunchThatItTells) {
   EXPECT_LT(flight.error.max, 1e-15);
 }
 
+// A correction of the reference by (t/t₀)·δ moves it from the first moment on, the launch with it;
+// those of higher powers begin at rest.
+TEST(ScriptedRollout, IsLaunchedAlongACorrectionOfTheReference) {
+  Problem problem = problem_of(cross());
+  problem.arrival_time = 0.5;
+  const auto launched = [&] {
+    return launch(ScriptedBackend(problem, 4, [](const Moment&) { return cross(); }));
+  };
+  const Points before = launched();
+  problem.reference_correction.assign(4, Points::Zero(2, 4));
+  const Points correction = 0.3 * cross();
+  problem.reference_correction[0] = correction.colwise() + Eigen::Vector2d(5, 7);  // shape counts
+  EXPECT_LT((launched() - before - correction / 0.5).norm(), 1e-14);
+  problem.reference_correction[1] = problem.reference_correction[3] = 2 * cross();
+  EXPECT_LT((launched() - before - correction / 0.5).norm(), 1e-14);
+}
+
 TEST(Gains, OfGroupsHaveTheLargestOfAll) {
   for (std::size_t place = 0; place < 4; ++place) {
     std::vector<double> groups = {1, 2, 3, 1.5};
