@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::size_t largest_file = 256 << 20, largest_json = 128 << 20;  // bytes
-constexpr std::size_t largest_buffers = 256 << 20;                         // bytes, all together
+constexpr std::size_t largest_file = 256 << 20, largest_json = 64 << 20;  // bytes
+constexpr std::size_t largest_buffers = 256 << 20;                        // bytes, all together
 constexpr JsonLimits limits = {"glTF", 64, 2'000'000};
 
 // Numbers of the container.
