@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::size_t largest_json = 128 << 20;     // bytes
+constexpr std::size_t largest_json = 64 << 20;      // bytes
 constexpr std::size_t largest_buffers = 256 << 20;  // bytes, all together
 constexpr JsonLimits limits = {"glTF", 64, 2'000'000};
 

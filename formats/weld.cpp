@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <numeric>
 #include <span>
 #include <tuple>
@@ -35,26 +36,37 @@ std::vector<Index> places(std::span<const Points* const> poses) {
   return place;
 }
 
-/// A face's side: the places of its ends in ascending order, then those ends themselves.
+/// A face's side, from one of its corners to the next: the places of its ends in ascending order.
 struct Side {
-  Index first_place, last_place;
-  Index first, last;
-  std::size_t face;
+  std::array<std::int32_t, 2> places;
+  std::int32_t face, corner;
 };
 
+/// The side's ends, in the order of their places.
+std::array<Index, 2> ends(const Side& side, const Faces& faces, const std::vector<Index>& place) {
+  const auto& face = faces[at(side.face)];
+  std::array both = {face[at(side.corner)], face[(at(side.corner) + 1) % face.size()]};
+  if (place[at(both[0])] > place[at(both[1])]) std::swap(both[0], both[1]);
+  return both;
+}
+
 std::vector<Side> sides_of(const Faces& faces, const std::vector<Index>& place) {
+  std::size_t count = 0;
+  for (const auto& face : faces) count += face.size();
   std::vector<Side> sides;
+  sides.reserve(count);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     for (std::size_t k = 0; k < faces[f].size(); ++k) {
-      Index first = faces[f][k], last = faces[f][(k + 1) % faces[f].size()];
+      Side side{{}, static_cast<std::int32_t>(f), static_cast<std::int32_t>(k)};
+      const auto [first, last] = ends(side, faces, place);
       if (place[at(first)] == place[at(last)]) continue;  // has no length: refused as a sheet's
-      if (place[at(first)] > place[at(last)]) std::swap(first, last);
-      sides.push_back({place[at(first)], place[at(last)], first, last, f});
+      side.places = {static_cast<std::int32_t>(place[at(first)]),
+                     static_cast<std::int32_t>(place[at(last)])};
+      sides.push_back(side);
     }
   }
-  std::ranges::sort(sides, {}, [](const Side& side) {
-    return std::tuple(side.first_place, side.last_place, side.face);
-  });
+  std::ranges::sort(
+      sides, {}, [](const Side& side) { return std::tuple(side.places, side.face, side.corner); });
   return sides;
 }
 
@@ -95,18 +107,14 @@ std::vector<Index> welded(const Faces& faces, std::span<const Points* const> pos
   Sets sets(count);
   for (std::size_t start = 0, end = 0; start < sides.size(); start = end) {
     const Side& one = sides[start];
-    while (end < sides.size() && sides[end].first_place == one.first_place &&
-           sides[end].last_place == one.last_place) {
-      ++end;
-    }
+    while (end < sides.size() && sides[end].places == one.places) ++end;
     if (end - start != 2) continue;
     const Side& other = sides[start + 1];
-    if (lies_upon(faces[one.face], faces[other.face], place) ||
-        lies_upon(faces[other.face], faces[one.face], place)) {
-      continue;
-    }
-    sets.unite(one.first, other.first);
-    sets.unite(one.last, other.last);
+    const auto &face = faces[at(one.face)], &beside = faces[at(other.face)];
+    if (lies_upon(face, beside, place) || lies_upon(beside, face, place)) continue;
+    const auto here = ends(one, faces, place), there = ends(other, faces, place);
+    sets.unite(here[0], there[0]);
+    sets.unite(here[1], there[1]);
   }
   std::vector<Index> number(at(count));
   Index next = 0;
