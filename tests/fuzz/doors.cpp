@@ -121,7 +121,7 @@ void require_answer(const studio::Answer& answer) {
   require(answer.status != 500, "the studio failed", answer.body);
   if (answer.type == "application/json") {
     require(nlohmann::json::accept(answer.body), "an answer is no JSON", answer.body);
-    require(answer.body.find("--") == answer.body.npos, "speaks of an option", answer.body);
+    require(!answer.body.starts_with(R"({"error":"--)"), "speaks of an option", answer.body);
   }
 }
 
