@@ -92,8 +92,8 @@ class EdgeChain {
       const auto [from, to] = object.edges[k];
       if (from == to) continue;  // of no length
       ++count_;
-      at_vertex_.push_back({from, k});
-      at_vertex_.push_back({to, k});
+      at_vertex_.emplace_back(from, k);
+      at_vertex_.emplace_back(to, k);
     }
     std::ranges::sort(at_vertex_);
   }

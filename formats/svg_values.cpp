@@ -53,8 +53,7 @@ Affine2d transform_of(std::string_view name, const std::vector<double>& n, const
   if (name == "rotate" && takes(1, 3)) {
     const double s = std::sin(radians(n[0])), c = std::cos(radians(n[0]));
     const Affine2d turn = affine(c, s, -s, c, 0, 0);
-    if (n.size() == 1) return turn;
-    return translation(n[1], n[2]) * turn * translation(-n[1], -n[2]);
+    return n.size() == 1 ? turn : translation(n[1], n[2]) * turn * translation(-n[1], -n[2]);
   }
   if (name == "skewX" && takes(1, 1)) return affine(1, 0, std::tan(radians(n[0])), 1, 0, 0);
   if (name == "skewY" && takes(1, 1)) return affine(1, std::tan(radians(n[0])), 0, 1, 0, 0);

@@ -203,6 +203,8 @@ TEST(SvgPage, AMillimetreIsAMillimetreAndTheLowerLeftCornerTheOrigin) {
   EXPECT_POINTS(read("width='6pc' height='101.6Q'", "x2='96px' y2='96'"), {0, 0.0254}, {0.0254, 0});
   EXPECT_POINTS(read("width='100%' height='100%' viewBox='0 0 96 96'", "x2='96' y2='96'"),
                 {0, 0.0254}, {0.0254, 0});
+  EXPECT_POINTS(read("width='2in' height='2in' viewBox='0 0 10 10'", "y1='100%' x2='50%' y2='10'"),
+                {0, 0.0254}, {0, 0});
 }
 
 TEST(SvgPage, IsFittedAsItsAspectRatioAsks) {

@@ -30,7 +30,7 @@ function drawnByBrowser() {
     matrix = matrix.translate(element.x.baseVal.value, element.y.baseVal.value)
       .multiply(geometry.transform.baseVal.consolidate().matrix);
   }
-  const count = 10000, length = geometry.getTotalLength();
+  const count = 24000, length = geometry.getTotalLength();
   const points = [];
   for (let i = 0; i <= count; ++i) {
     const { x, y } = geometry.getPointAtLength(length * i / count).matrixTransform(matrix);
