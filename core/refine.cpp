@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -14,6 +13,9 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
+
+#include "trust_region.h"
 
 namespace nuno {
 namespace {
@@ -58,70 +60,274 @@ std::vector<Points> moved(std::vector<Points> offset, const CorrectionDirections
   return offset;
 }
 
-/// The flight in a local model: forces F + F'Δ, positions at arrival by X'. Every step minimises
-///     |F + F'(Δ + δ)|² + w²·|residual − X'δ|² + μ²·|δ|²,
-/// so, with H = F'ᵀF' + μ²I and g = F'ᵀ(F + F'Δ),
-///     δ = H⁻¹(X'ᵀλ − g),   (X'H⁻¹X'ᵀ + w⁻²)·λ = residual + X'H⁻¹g,
-/// which stays well-conditioned as w grows and arrival becomes a condition. A landing lets the
-/// forces be, g = 0, and takes away the residual with the least change to them and to the
-/// correction.
-class LocalModel {
+/// Says whether the flight arrived, within what was allowed.
+void conclude(RefineSummary& summary, double tolerance, double effort_limit) {
+  summary.converged = summary.flight.error.mean <= tolerance;
+  if (summary.converged) summary.reason = arrived;
+  if (summary.flight.control_effort > effort_limit) {
+    summary.converged = false;
+    summary.reason = too_much_effort;
+  }
+}
+
+class Stopwatch {
  public:
-  explicit LocalModel(RolloutJacobian jacobian)
-      : jacobian_(std::move(jacobian)),
-        hessian_(Eigen::MatrixXd::Zero(jacobian_.arrival.cols(), jacobian_.arrival.cols())),
-        path_(Vector::Zero(jacobian_.arrival.cols())) {
-    hessian_.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.forces_jacobian.transpose());
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
-
-  bool is_finite() const { return hessian_.allFinite() && jacobian_.arrival.allFinite(); }
-  bool is_fresh() const { return path_.isZero(0); }
-
-  /// `damping` is μ over the size of F'.
-  void set_damping(double damping) {
-    Eigen::MatrixXd damped = hessian_;
-    damped.diagonal().array() += damping * damping * hessian_.diagonal().maxCoeff();
-    factor_.compute(damped);
-    across_ = factor_.solve(jacobian_.arrival.transpose());
-    reach_ = jacobian_.arrival * across_;
-  }
-
-  Vector step(const Vector& residual, double weight) const {
-    const Vector down = factor_.solve(jacobian_.forces_jacobian.transpose() * forces(path_));
-    Eigen::MatrixXd system = reach_;
-    system.diagonal().array() += 1 / (weight * weight);
-    const Vector pull = system.ldlt().solve(residual + jacobian_.arrival * down);
-    return across_ * pull - down;
-  }
-
-  Vector landing(const Vector& residual) const {
-    constexpr double rounding = 1e-14;  // no offset moves the centroid
-    Eigen::MatrixXd system = reach_;
-    system.diagonal().array() += rounding * reach_.diagonal().maxCoeff();
-    return across_ * system.ldlt().solve(residual);
-  }
-
-  /// By how much a step lets the objective fall.
-  double predicted_reduction(const Vector& residual, double weight, const Vector& step) const {
-    const auto cost = [&](const Vector& path, const Vector& left) {
-      return forces(path).squaredNorm() + weight * weight * left.squaredNorm();
-    };
-    return cost(path_, residual) - cost(path_ + step, residual - jacobian_.arrival * step);
-  }
-
-  void go(const Vector& step) { path_ += step; }
 
  private:
-  Vector forces(const Vector& path) const {
-    return jacobian_.forces + jacobian_.forces_jacobian * path;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Homotopy from a flight in which effort counts to one that arrives: the weight of the error in
+/// effort² + weight²·error² grows with every step that succeeds.
+class Homotopy {
+ public:
+  Homotopy(double weight, double largest_weight)
+      : weight_(weight), largest_weight_(largest_weight) {}
+
+  double weight() const { return weight_; }
+  bool is_over() const { return weight_ > largest_weight_; }
+  void advance() { weight_ *= growth_; }
+
+  /// Takes the last advance back and goes on by a smaller one; false if that is not worth a flight.
+  bool advance_less() {
+    if (growth_ < 1.05) return false;
+    weight_ /= growth_;
+    growth_ = std::sqrt(growth_);
+    weight_ *= growth_;
+    return true;
   }
 
-  RolloutJacobian jacobian_;
-  Eigen::MatrixXd hessian_;             // F'ᵀF', lower half
-  Vector path_;                         // Δ
-  Eigen::LLT<Eigen::MatrixXd> factor_;  // of H
-  Eigen::MatrixXd across_;              // H⁻¹X'ᵀ
-  Eigen::MatrixXd reach_;               // X'H⁻¹X'ᵀ
+ private:
+  double weight_, largest_weight_;
+  double growth_ = 4;
+};
+
+/// The last correction: where the Jacobian no longer foretells what effort can be spared, little of
+/// it is left to spare; from near enough, the rest of the error alone is removed.
+struct Landing {
+  double near_enough;      ///< mean distance from which to land [m]
+  bool is_active = false;  ///< the steps are of a landing
+  double stride = 1;       ///< part of the way that one step goes, at least least_stride
+
+  static constexpr double least_stride = 1e-2;
+
+  void lengthen() { stride = std::min(1.0, 4 * stride); }
+
+  /// From `error`, no step came nearer: lands again once it is much nearer.
+  void give_up(double error) {
+    is_active = false;
+    near_enough = 0.3 * error;
+  }
+};
+
+/// Whether the rounds go on.
+enum class Next { round, stop };
+
+/// A refinement on its way: the best flight up to now, and what the next round needs to know.
+class Refinement {
+ public:
+  Refinement(const Problem& problem, double gain, const MakeBackend& make, const MakeBackend& model,
+             const RefineOptions& options)
+      : problem_(problem),
+        gain_(gain),
+        make_(make),
+        make_model_(model),
+        options_(options),
+        length_(problem.cloth().size),
+        unit_(1 / (length_ * std::sqrt(static_cast<double>(problem.cloth().particles())))),
+        directions_(correction_directions(problem.cloth().particles())),
+        summary_(first_flight()),
+        within_reach_(is_within_reach()),
+        homotopy_(first_weight(), largest_weight()),
+        landing_{has_limit() || !within_reach_ ? 0 : 1e-3 * length_} {}
+
+  RefineSummary run() {
+    for (Index i = 0; i < options_.rounds && !is_over(); ++i) {
+      if (next_round() == Next::stop) break;
+    }
+    conclude(summary_, options_.tolerance * length_, options_.effort_limit);
+    return std::move(summary_);
+  }
+
+ private:
+  /// A step of the correction, and the flight that it leads to.
+  struct Trial {
+    Vector step;
+    std::vector<Points> correction;
+    Rollout flight;
+  };
+
+  bool has_limit() const { return std::isfinite(options_.effort_limit); }
+  bool is_within_limit(const Rollout& flight) const {
+    return flight.control_effort <= options_.effort_limit;
+  }
+
+  Vector residual(const Rollout& flight) const {
+    return (problem_.target - flight.final).reshaped();
+  }
+
+  double objective(const Rollout& flight) const {
+    return flight.control_effort * flight.control_effort +
+           std::pow(homotopy_.weight() * unit_, 2) * residual(flight).squaredNorm();
+  }
+
+  Problem corrected(const std::vector<Points>& correction) const {
+    Problem corrected = problem_;
+    corrected.reference_correction = correction;
+    return corrected;
+  }
+
+  RefineSummary first_flight() const {
+    RefineSummary summary;
+    summary.reference_correction = problem_.reference_correction;
+    if (summary.reference_correction.empty()) {
+      summary.reference_correction.assign(correction_powers.size(),
+                                          Points::Zero(2, problem_.cloth().particles()));
+    }
+    summary.flight = rollout(*make_(corrected(summary.reference_correction)), gain_);
+    summary.rollouts = 1;
+    summary.error_before = summary.flight.error.mean;
+    summary.reason = fmt::format("{} rounds were not enough", options_.rounds);
+    return summary;
+  }
+
+  /// A cloth that is too long or too short for a segment of the target can be squeezed towards it
+  /// without end.
+  bool is_within_reach() const {
+    constexpr double reachable_mismatch = 1e-6;
+    return assess(*make_(corrected(summary_.reference_correction))).length_mismatch <=
+           reachable_mismatch;
+  }
+
+  /// An answer of before is corrected where it stands; a new one starts where effort counts.
+  double first_weight() const {
+    const double here = summary_.flight.control_effort * length_ / summary_.flight.error.mean;
+    if (!problem_.reference_correction.empty()) return here;
+    return std::min(here, has_limit() ? 1.0 : 30.0);
+  }
+
+  /// Out of reach, an error of 1e-4·L is worth a particle's weight and no more.
+  double largest_weight() const {
+    return within_reach_ || has_limit() ? std::numeric_limits<double>::infinity() : 1e4;
+  }
+
+  Next stop(const char* reason) {
+    summary_.reason = reason;
+    return Next::stop;
+  }
+
+  /// Arrived, or nothing more can come of it.
+  bool is_over() {
+    if (summary_.flight.error.mean <= options_.tolerance * length_) return true;
+    if (summary_.flight.status == RolloutStatus::diverged) {
+      stop("the flight diverged");
+      return true;
+    }
+    if (homotopy_.is_over()) {
+      stop("the cloth's segments do not fit the target's; this is as near as is worth it");
+      return true;
+    }
+    return false;
+  }
+
+  Next next_round() {
+    if (!trust_.has_model()) {
+      ++summary_.jacobians;
+      if (!trust_.set_model(make_model_(corrected(summary_.reference_correction))
+                                ->jacobian(gain_, directions_))) {
+        return stop("the jacobian is not finite");
+      }
+    }
+    return landing_.is_active ? land() : gauss_newton();
+  }
+
+  Trial fly(Vector step) {
+    std::vector<Points> correction = moved(summary_.reference_correction, directions_, step);
+    Rollout flight = rollout(*make_(corrected(correction)), gain_);
+    ++summary_.rollouts;
+    return {std::move(step), std::move(correction), std::move(flight)};
+  }
+
+  void accept(Trial trial) {
+    trust_.model().go(trial.step);
+    summary_.flight = std::move(trial.flight);
+    summary_.reference_correction = std::move(trial.correction);
+  }
+
+  Next land() {
+    Trial trial = fly(landing_.stride * trust_.model().landing(residual(summary_.flight)));
+    const double left = trial.flight.error.mean / summary_.flight.error.mean;
+    const bool nearer = left < 1 - 0.3 * landing_.stride;
+    const bool fresh = trust_.model().is_fresh();
+    if (nearer) accept(std::move(trial));
+    if (left < 0.25) return Next::round;
+    if (nearer || !fresh) {
+      trust_.drop_model();
+      landing_.lengthen();
+    } else if (landing_.stride > Landing::least_stride) {
+      landing_.stride /= 4;
+    } else {
+      landing_.give_up(summary_.flight.error.mean);
+    }
+    return Next::round;
+  }
+
+  Next gauss_newton() {
+    const double weight = homotopy_.weight() * unit_;
+    const Vector left = residual(summary_.flight);
+    Trial trial = fly(trust_.model().step(left, weight));
+    const double kept = (objective(summary_.flight) - objective(trial.flight)) /
+                        trust_.model().predicted_reduction(left, weight, trial.step);
+    return kept > 0.1 ? advance(std::move(trial), kept) : retry();
+  }
+
+  /// After a step that kept such a part of the reduction that the model predicted.
+  Next advance(Trial trial, double kept) {
+    const bool was_within_limit = is_within_limit(summary_.flight);
+    if (was_within_limit && trial.flight.control_effort > options_.effort_limit) {
+      return homotopy_.advance_less() ? Next::round
+                                      : stop("more would take more effort than the limit");
+    }
+    accept(std::move(trial));
+    if (was_within_limit || is_within_limit(summary_.flight)) homotopy_.advance();
+    if (kept < 0.5) {
+      trust_.drop_model();
+    } else {
+      trust_.widen();
+    }
+    return Next::round;
+  }
+
+  /// After a step that the model did not foretell: lands from here, or prepares a better step.
+  Next retry() {
+    if (summary_.flight.error.mean < landing_.near_enough) {
+      landing_.is_active = true;
+      trust_.prepare_landing();
+    } else if (!trust_.model().is_fresh()) {
+      trust_.drop_model();
+    } else if (!trust_.narrow()) {
+      return stop("no offset brings it nearer");
+    }
+    return Next::round;
+  }
+
+  const Problem& problem_;
+  const double gain_;
+  const MakeBackend& make_;
+  const MakeBackend& make_model_;
+  const RefineOptions& options_;
+  const double length_;  // L
+  const double unit_;    // 1/(L·√N): an rms error of L counts as much as an effort of the weight
+  const CorrectionDirections directions_;
+
+  RefineSummary summary_;
+  const bool within_reach_;
+  Homotopy homotopy_;
+  TrustRegion trust_;
+  Landing landing_;
 };
 
 }  // namespace
@@ -136,147 +342,9 @@ double tracking_gain(const Backend& backend) {
 
 RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
-  const Index particles = problem.cloth().particles();
-  const double length = problem.cloth().size;
-  Problem corrected = problem;
-  if (corrected.reference_correction.empty()) {
-    corrected.reference_correction.assign(correction_powers.size(), Points::Zero(2, particles));
-  }
-
-  RefineSummary summary;
-  summary.reference_correction = corrected.reference_correction;
-  summary.flight = rollout(*make(corrected), gain);
-  summary.rollouts = 1;
-  summary.error_before = summary.flight.error.mean;
-  summary.reason = fmt::format("{} rounds were not enough", options.rounds);
-
-  const CorrectionDirections directions = correction_directions(particles);
-  const auto residual_of = [&](const Rollout& flight) -> Vector {
-    return (problem.target - flight.final).reshaped();
-  };
-  // w = weight/(L·√N): an rms error of L counts as much as an effort of `weight`.
-  const double unit = 1 / (length * std::sqrt(static_cast<double>(particles)));
-  const auto objective = [&](const Rollout& flight, double weight) {
-    return flight.control_effort * flight.control_effort +
-           std::pow(weight * unit, 2) * residual_of(flight).squaredNorm();
-  };
-  // An answer of before is corrected where it stands; a new one starts where effort counts.
-  double weight = summary.flight.control_effort * length / summary.flight.error.mean;
-  if (problem.reference_correction.empty()) {
-    weight = std::min(weight, std::isfinite(options.effort_limit) ? 1.0 : 30.0);
-  }
-  // A cloth that is too long or too short for a segment of the target can be squeezed towards it
-  // without end; there, an error of 1e-4·L is worth a particle's weight and no more.
-  constexpr double reachable_mismatch = 1e-6;
-  const bool within_reach = assess(*make(corrected)).length_mismatch <= reachable_mismatch;
-  const double largest_weight = within_reach || std::isfinite(options.effort_limit)
-                                    ? std::numeric_limits<double>::infinity()
-                                    : 1e4;
-  double growth = 4;
-  constexpr double least_damping = 1e-3, landing_damping = 1, most_damping = 1e3;
-  double damping = least_damping;
-  // Where the jacobian no longer foretells what effort can be spared, little of it is left to
-  // spare; from near enough, the cloth lands.
-  bool landing = false;
-  constexpr double least_stride = 1e-2;
-  double stride = 1;  // of the way to land
-  double landing_error = within_reach && !std::isfinite(options.effort_limit) ? 1e-3 * length : 0;
-  std::optional<LocalModel> near;
-  for (Index round = 0; round < options.rounds; ++round) {
-    if (summary.flight.error.mean <= options.tolerance * length) break;
-    if (summary.flight.status == RolloutStatus::diverged) {
-      summary.reason = "the flight diverged";
-      break;
-    }
-    if (weight > largest_weight) {
-      summary.reason =
-          "the cloth's segments do not fit the target's; this is as near as is worth it";
-      break;
-    }
-    if (!near) {
-      corrected.reference_correction = summary.reference_correction;
-      near.emplace(model(corrected)->jacobian(gain, directions));
-      ++summary.jacobians;
-      if (!near->is_finite()) {
-        summary.reason = "the jacobian is not finite";
-        break;
-      }
-      near->set_damping(damping);
-    }
-    const Vector residual = residual_of(summary.flight);
-    const Vector step =
-        landing ? Vector(stride * near->landing(residual)) : near->step(residual, weight * unit);
-    corrected.reference_correction = moved(summary.reference_correction, directions, step);
-    Rollout flight = rollout(*make(corrected), gain);
-    ++summary.rollouts;
-    const auto accept = [&] {
-      near->go(step);
-      summary.flight = std::move(flight);
-      summary.reference_correction = corrected.reference_correction;
-    };
-    if (landing) {
-      const double left = flight.error.mean / summary.flight.error.mean;
-      const bool nearer = left < 1 - 0.3 * stride;
-      const bool fresh = near->is_fresh();
-      if (nearer) accept();
-      if (left < 0.25) continue;
-      if (nearer || !fresh) {
-        near.reset();
-        stride = std::min(1.0, 4 * stride);
-      } else if (stride > least_stride) {
-        stride /= 4;
-      } else {
-        landing = false;
-        landing_error = 0.3 * summary.flight.error.mean;
-      }
-      continue;
-    }
-    const double kept = (objective(summary.flight, weight) - objective(flight, weight)) /
-                        near->predicted_reduction(residual, weight * unit, step);
-    if (kept > 0.1) {
-      const bool within = summary.flight.control_effort <= options.effort_limit;
-      if (within && flight.control_effort > options.effort_limit) {
-        if (growth < 1.05) {
-          summary.reason = "more would take more effort than the limit";
-          break;
-        }
-        weight /= growth;
-        growth = std::sqrt(growth);
-        weight *= growth;
-        continue;
-      }
-      accept();
-      if (within || summary.flight.control_effort <= options.effort_limit) weight *= growth;
-      if (kept < 0.5) {
-        near.reset();
-      } else if (damping > least_damping) {
-        near->set_damping(damping = std::max(least_damping, 0.3 * damping));
-      }
-    } else if (summary.flight.error.mean < landing_error) {
-      landing = true;
-      damping = std::max(damping, landing_damping);
-      if (near->is_fresh()) {
-        near->set_damping(damping);
-      } else {
-        near.reset();
-      }
-    } else if (!near->is_fresh()) {
-      near.reset();
-    } else if (damping < most_damping) {
-      near->set_damping(damping *= 10);
-    } else {
-      summary.reason = "no offset brings it nearer";
-      break;
-    }
-  }
-  summary.converged = summary.flight.error.mean <= options.tolerance * length;
-  if (summary.converged) summary.reason = arrived;
-  if (summary.flight.control_effort > options.effort_limit) {
-    summary.converged = false;
-    summary.reason = too_much_effort;
-  }
-  summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Stopwatch stopwatch;
+  RefineSummary summary = Refinement(problem, gain, make, model, options).run();
+  summary.seconds = stopwatch.seconds();
   return summary;
 }
 
@@ -284,7 +352,7 @@ RefineSummary transfer(const Problem& problem, const RefineSummary& answer, cons
                        const MakeBackend& model, const RefineOptions& options) {
   constexpr double single_precision = 1e-5;
   constexpr Index rounds = 4;
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const double tolerance = std::max(options.tolerance, single_precision);
   const double gain = answer.flight.gains.rest;
   Problem corrected = problem;
@@ -315,8 +383,7 @@ RefineSummary transfer(const Problem& problem, const RefineSummary& answer, cons
     transferred.converged = false;
     transferred.reason = too_much_effort;
   }
-  transferred.seconds +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  transferred.seconds += stopwatch.seconds();
   return transferred;
 }
 

@@ -31,6 +31,15 @@ class Recorder {
     if (arrived) keep(arrival_time_, cloth.positions());
   }
 
+  /// After every step beyond arrival.
+  void record_tail(double time, const Simulation& cloth) {
+    if (rate_ <= 0) return;
+    for (; due() <= time; ++frame_) {
+      if (due() <= arrival_time_ * (1 + 1e-9)) continue;  // kept as the one of arrival
+      keep(due(), cloth.positions() - (time - due()) * cloth.velocities());
+    }
+  }
+
  private:
   void keep(double time, Points positions) {
     rollout_.frame_times.push_back(time);
@@ -43,6 +52,27 @@ class Recorder {
   double arrival_time_;
   Index frame_ = 0;
   Rollout& rollout_;
+};
+
+/// The velocities that the control of a sheet is told. An engine knows those of half a step ago, as
+/// the reference does. Both are taken on by half a step, to the time of the positions, so that what
+/// the one lacks of the other is 1½ of that of now less ½ of that of a step ago: damping of second
+/// order in the step. (A chain's control is told the engine's own, and its damping is of first.)
+class VelocityAhead {
+ public:
+  const Points& of(const Points& velocities, const Points& reference) {
+    if (told_.size() == 0) {  // those of the launch are of its own time
+      told_ = velocities;
+    } else {
+      told_ = velocities + 0.5 * ((velocities - before_) - (reference - reference_before_));
+    }
+    before_ = velocities;
+    reference_before_ = reference;
+    return told_;
+  }
+
+ private:
+  Points told_, before_, reference_before_;
 };
 
 /// Largest |l/ℓ − 1| of the edges; NaN if a position is.
@@ -81,6 +111,21 @@ Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions
 
 namespace {
 
+void tell_divergence(const Problem& problem, Index step, double strain, const Simulation& cloth,
+                     Rollout& result) {
+  result.status = RolloutStatus::diverged;
+  result.diverged_at_step = step;
+  result.reason = cloth.failure();
+  if (!result.reason.empty()) return;
+  if (!std::isfinite(strain)) {
+    result.reason = "a particle's position is no longer finite";
+  } else if (problem.is_sheet()) {
+    result.reason = "an edge is a thousand times its length";
+  } else {
+    result.reason = "a segment is a thousand times its length";
+  }
+}
+
 /// Steps until arrival or divergence, which it tells `result`, as it does the strain on the way.
 /// Returns the sum of the squared control forces on particles of mean mass [N²].
 double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Recorder& recorder,
@@ -92,10 +137,15 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
   Points forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
   Points pulls = forces;
   double squared_force = 0;
+  const bool looks_ahead = problem.is_sheet() && problem.damping_ratio > 0;
+  VelocityAhead ahead;
   recorder.record(0, cloth, false);
   for (Index n = 0; n < backend.steps(); ++n) {
     if (control.pulls()) {
-      control.pull(reference, cloth.positions(), cloth.velocities(), pulls);
+      control.pull(
+          reference, cloth.positions(),
+          looks_ahead ? ahead.of(cloth.velocities(), reference.velocity()) : cloth.velocities(),
+          pulls);
       squared_force += pulls.squaredNorm();
       control.to_forces(pulls, forces);
     }
@@ -103,21 +153,31 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
     reference.advance();
     const double strain = largest_strain(problem.cloth(), cloth.positions());
     if (!(strain < torn_strain)) {
-      result.status = RolloutStatus::diverged;
-      result.diverged_at_step = n + 1;
-      result.reason = cloth.failure();
-      if (result.reason.empty()) {
-        result.reason = std::isfinite(strain) ? problem.is_sheet()
-                                                    ? "an edge is a thousand times its length"
-                                                    : "a segment is a thousand times its length"
-                                              : "a particle's position is no longer finite";
-      }
+      tell_divergence(problem, n + 1, strain, cloth, result);
       break;
     }
     result.max_strain = std::max(result.max_strain, strain);
     recorder.record(static_cast<double>(n + 1) * h, cloth, n + 1 == backend.steps());
   }
+  result.final = cloth.positions();
+  result.final_velocity = cloth.velocities();
   return squared_force;
+}
+
+/// Steps on from arrival without control, for `tail` seconds.
+void fly_on(const Backend& backend, double tail, Simulation& cloth, Recorder& recorder,
+            Rollout& result) {
+  const Problem& problem = backend.problem();
+  const double h = backend.time_step();
+  const Points no_forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
+  const auto last = backend.steps() + static_cast<Index>(std::ceil(tail / h * (1 - 1e-9)));
+  for (Index n = backend.steps(); n < last; ++n) {
+    problem.stop_where_asked();
+    cloth.step(no_forces);
+    const double strain = largest_strain(problem.cloth(), cloth.positions());
+    if (!(strain < torn_strain)) return tell_divergence(problem, n + 1, strain, cloth, result);
+    recorder.record_tail(static_cast<double>(n + 1) * h, cloth);
+  }
 }
 
 }  // namespace
@@ -132,8 +192,8 @@ Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions
   const std::unique_ptr<Simulation> cloth = backend.start(initial, result.launch_velocity);
   Recorder recorder(options.frames_per_second, problem.arrival_time, result);
   const double squared_force = fly(backend, gains, *cloth, recorder, result);
+  if (result.status == RolloutStatus::ok) fly_on(backend, options.tail, *cloth, recorder, result);
 
-  result.final = cloth->positions();
   if (result.status == RolloutStatus::ok) {
     result.error = arrival_error(problem.cloth(), result.final, problem.target);
     const double samples =

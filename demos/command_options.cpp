@@ -1,5 +1,6 @@
 #include "command_options.h"
 
+#include <nuno/animation.h>
 #include <nuno/engines.h>
 #include <nuno/materials.h>
 
@@ -14,8 +15,6 @@ namespace nuno {
 namespace {
 
 constexpr const char* scene_file = "Scene file (JSON)";
-constexpr const char* result_file =
-    "Result (JSON; - is standard output), or of a sheet an animated mesh (.glb)";
 
 // Below the options of every command that throws scenes.
 constexpr const char* which_reference = R"(What the control pulls towards is the scene's choice:
@@ -37,6 +36,44 @@ void add_any_backend(CLI::App& command, std::string& backend) {
                           fmt::join(sheet_engines, " or ")));
 }
 
+/// --out for a flight, and how an animation lies in the shot.
+void add_flight_out(CLI::App& command, std::string& out, AnimationOptions& animation) {
+  add_out(command, out, "FILE",
+          fmt::format("Result (JSON; - is standard output), or an animated mesh:\n"
+                      "{}; numbered files have ####.obj",
+                      fmt::join(animation_extensions, ", ")));
+  const auto add_count = [&](const char* name, Index& into, const char* description) {
+    command
+        .add_option_function<std::string>(
+            name,
+            [name, &into](const std::string& text) { into = whole_number(name, text, 0, 1000000); },
+            description)
+        ->type_name("N")
+        ->default_str(fmt::format("{}", into));
+  };
+  add_count("--first-frame", animation.first_frame, "Animation: number of its first frame");
+  add_count("--hold-frames", animation.held_frames,
+            "Animation: frames of the cloth as it is before the throw");
+  command
+      .add_option_function<std::string>(
+          "--tail",
+          [&animation](const std::string& text) {
+            animation.tail = non_negative_number("--tail", text);
+          },
+          "Animation: free flight after the arrival [s], without control")
+      ->type_name("S")
+      ->default_str("0");
+  command
+      .add_option_function<std::string>(
+          "--ribbon-width",
+          [&animation](const std::string& text) {
+            animation.ribbon_width = positive_number("--ribbon-width", text);
+          },
+          "Animation: width of a chain's ribbon [m], > 0; by default a tenth\n"
+          "of its length")
+      ->type_name("W");
+}
+
 /// A limit of the search, a number ≥ 0.
 void add_limit(CLI::App& command, const char* name, std::optional<double>& limit,
                const char* description) {
@@ -46,6 +83,12 @@ void add_limit(CLI::App& command, const char* name, std::optional<double>& limit
           [name, &limit](const std::string& text) { limit = non_negative_number(name, text); },
           description)
       ->type_name("X");
+}
+
+void add_error_limit(CLI::App& command, std::optional<double>& limit) {
+  add_limit(command, "--error-limit", limit,
+            "The gain of least control effort whose error is at most X\n"
+            "of the cloth's length, instead of the one of least error");
 }
 
 void add_optimizer(CLI::App& command, OptimizeOptions& options) {
@@ -58,9 +101,7 @@ void add_optimizer(CLI::App& command, OptimizeOptions& options) {
           fmt::format("Search: {}", fmt::join(optimizer_names, " or ")))
       ->type_name("NAME")
       ->default_str(options.optimizer);
-  add_limit(command, "--error-limit", options.error_limit,
-            "The gain of least control effort whose error is at most X\n"
-            "of the cloth's length, instead of the one of least error");
+  add_error_limit(command, options.error_limit);
   add_limit(command, "--effort-limit", options.effort_limit,
             "The gain of least error whose control effort is at most X");
 }
@@ -118,7 +159,7 @@ Action add_simulate(CLI::App& command) {
       ->type_name("A")
       ->default_str(fmt::format("{}", options->gains.rest));
   add_time_step(command, options->time_step);
-  add_out(command, options->out, "FILE", result_file);
+  add_flight_out(command, options->out, options->animation);
   command.footer(which_reference);
   return [options] { return simulate(*options); };
 }
@@ -138,7 +179,7 @@ Action add_optimize(CLI::App& command) {
                    "Prefer a gain whose answer is not fragile: the error is the mean\n"
                    "over five starts, four of them perturbed by 0.1 % of the length");
   add_time_step(command, options->time_step);
-  add_out(command, options->out, "FILE", result_file);
+  add_flight_out(command, options->out, options->animation);
   command.footer(which_reference);
   return [options, &command] {
     require_compatible(*options, command.count("--optimizer") > 0);
@@ -149,15 +190,16 @@ Action add_optimize(CLI::App& command) {
 Action add_throw(CLI::App& command) {
   const auto options = std::make_shared<ThrowOptions>();
   add_file(command, "START", options->start,
-           "Mesh of the cloth as it is (.obj, .ply, .gltf, .glb)");
+           "The cloth as it is: a mesh (.obj, .ply, .gltf, .glb), or a drawn line\n"
+           "(.svg, .obj, .csv), FILE#ID where there are several");
   add_file(command, "TARGET", options->target,
-           "The same mesh as it should be; FILE.glb#NAME is a shape key\n"
-           "(morph target) of that file; none: START's only shape key");
+           "The same mesh as it should be, or another line; FILE.glb#NAME is a\n"
+           "shape key (morph target). May be left out where START has a single\n"
+           "shape key, or two lines, initial and target");
   command.get_option("TARGET")->required(false);
   add_positive(command, "--time", "T", options->arrival_time, "Arrival time [s], > 0");
   command.get_option("--time")->required();
-  add_out(command, options->out, "FILE",
-          "Animated mesh (.glb) or result (.json; - is standard output)");
+  add_flight_out(command, options->out, options->animation);
   command
       .add_option_function<std::string>(
           "--material",
@@ -168,14 +210,14 @@ Action add_throw(CLI::App& command) {
             }
             options->material = text;
           },
-          fmt::format("Cloth: {}", material_names()))
+          fmt::format("Cloth of a mesh: {}", material_names()))
       ->type_name("M");
-  add_backend(command, options->backend, sheet_engines,
-              fmt::format("Engine: {}", fmt::join(sheet_engines, " or ")));
+  add_any_backend(command, options->backend);
   add_positive(command, "--frames-per-second", "R", options->frames_per_second,
                "Frames of the animation [1/s], > 0");
   command.get_option("--frames-per-second")
       ->default_str(fmt::format("{}", options->frames_per_second));
+  add_error_limit(command, options->error_limit);
   command.add_flag("--settle", options->settle, "The cloth comes to rest on the target");
   command.footer(
       "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"

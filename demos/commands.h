@@ -18,14 +18,25 @@ enum class ExitStatus {
   diverged = 3     ///< the simulation diverged
 };
 
+/// How a flight lies in the shot, for a file that holds an animation.
+struct AnimationOptions {
+  Index first_frame = 1;  ///< number of the first frame, ≥ 0
+  Index held_frames = 0;  ///< of the initial shape before the throw, ≥ 0
+  double tail = 0;        ///< flight after arrival, without control [s], ≥ 0
+  std::optional<double>
+      ribbon_width;  ///< of a chain's mesh [m], > 0; absent: a tenth of its length
+};
+
 /// One rollout.
 struct SimulateOptions {
   std::string scene;                ///< a file
   std::string backend = "native";   ///< one of backend_names
   Gains gains = 0;                  ///< α ≥ 0 [N/m]; 0 is launch only
   std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
-  /// Animated mesh (.glb, of a sheet), else result file; "-" for standard output, empty for none.
+  /// Animation (one of animation_extensions), else result file; "-" for standard output, empty for
+  /// none.
   std::string out;
+  AnimationOptions animation;
 };
 
 /// The search for the best gain.
@@ -41,21 +52,26 @@ struct OptimizeOptions {
   bool refine = false;              ///< corrects the reference until the cloth is on the target
   bool robust = false;              ///< the error averaged over small perturbations of the start
   std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
-  /// Animated mesh (.glb, of a sheet), else result file; "-" for standard output, empty for none.
+  /// Animation (one of animation_extensions), else result file; "-" for standard output, empty for
+  /// none.
   std::string out;
+  AnimationOptions animation;
 };
 
-/// A cloth of two meshes thrown with what an animator wants: along a damped morph, at the best
-/// gain.
+/// A cloth of two meshes or drawings thrown with what an animator wants: along a damped morph, at
+/// the best gain.
 struct ThrowOptions {
-  /// Mesh files, the same faces in two poses; an empty target is the start's only morph target.
+  /// Mesh files, the same faces in two poses; or curves, see drawing.h. Without a target, `start`
+  /// is a mesh with one morph target, or a drawing with two curves called "initial" and "target".
   std::string start, target;
-  double arrival_time = 0;         ///< t₀ [s], > 0
-  std::string material;            ///< one of named_materials; empty: the default values
-  std::string backend = "native";  ///< one of sheet_engines
-  double frames_per_second = 24;   ///< of the animation [1/s], > 0
-  bool settle = false;             ///< the cloth comes to rest on the target
-  std::string out;                 ///< animated mesh (.glb) or result (.json), or empty for none
+  double arrival_time = 0;            ///< t₀ [s], > 0
+  std::string material;               ///< of a mesh, one of named_materials; empty: default values
+  std::string backend = "native";     ///< one of backend_names
+  double frames_per_second = 24;      ///< of the animation [1/s], > 0
+  bool settle = false;                ///< the cloth comes to rest on the target
+  std::optional<double> error_limit;  ///< as of the search
+  std::string out;                    ///< as of the others
+  AnimationOptions animation;
 };
 
 /// Both engines on the same scenes.

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <nuno/animation.h>
 #include <nuno/conditioning.h>
-#include <nuno/glb_file.h>
 #include <nuno/output.h>
 #include <nuno/progress.h>
 #include "pictures/summary.h"
@@ -12,36 +12,81 @@ namespace nuno {
 
 namespace {
 
-bool is_animated_mesh(const std::string& out) { return out.ends_with(".glb"); }
+/// The flight as a mesh in motion: a sheet's own, a chain's ribbon.
+Animation animate(const SceneFile& file, const Rollout& flight, const AnimationOptions& options) {
+  const Cloth& cloth = file.problem.cloth();
+  const double width = options.ribbon_width.value_or(cloth.size / 10);
+  const auto shape = [&](const Points& positions) {
+    return file.mesh ? positions : ribbon(positions, width);
+  };
+  Animation animation{file.scene.name,
+                      file.mesh ? *file.mesh : ribbon_mesh(cloth.initial, width),
+                      file.scene.frames_per_second,
+                      options.first_frame,
+                      {},
+                      {}};
+  for (Index k = 0; k < options.held_frames; ++k) {
+    animation.times.push_back(static_cast<double>(k) / animation.frames_per_second);
+    animation.positions.push_back(shape(cloth.initial));
+  }
+  const double start = static_cast<double>(options.held_frames) / animation.frames_per_second;
+  for (std::size_t k = 0; k < flight.frame_times.size(); ++k) {
+    animation.times.push_back(start + flight.frame_times[k]);
+    animation.positions.push_back(shape(flight.frame_positions[k]));
+  }
+  return animation;
+}
+
+void require_no_animation_options(const AnimationOptions& options) {
+  const AnimationOptions defaults;
+  const char* set = options.first_frame != defaults.first_frame   ? "--first-frame"
+                    : options.held_frames != defaults.held_frames ? "--hold-frames"
+                    : options.tail != defaults.tail               ? "--tail"
+                    : options.ribbon_width                        ? "--ribbon-width"
+                                                                  : nullptr;
+  if (set) {
+    throw InputError(fmt::format("{}: is for an animation: --out with {}", set,
+                                 fmt::join(animation_extensions, ", ")));
+  }
+}
 
 }  // namespace
 
-void require_room(const SceneFile& file, const std::string& out) {
-  if (is_animated_mesh(out) && !file.mesh) {
-    throw InputError(
-        fmt::format("--out: {}: a .glb holds a sheet, and {} is a chain", out, file.path));
+void require_room(const SceneFile& file, const std::string& out,
+                  const AnimationOptions& animation) {
+  if (is_animation(out)) {
+    require_animation(out, file.scene.arrival_time, file.scene.frames_per_second);
+    if (file.mesh && animation.ribbon_width) {
+      throw InputError(fmt::format("--ribbon-width: is for a chain, and {} is a sheet", file.path));
+    }
+  } else {
+    require_no_animation_options(animation);
   }
-  if (!out.empty()) require_few_frames(file);
+  const double held = static_cast<double>(animation.held_frames) / file.scene.frames_per_second;
+  if (!out.empty()) require_few_frames(file, held + animation.tail);
   require_writable(out);
 }
 
 ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains,
-               const std::string& out, const std::optional<Optimization>& optimization) {
+               const std::string& out, const AnimationOptions& animation,
+               const std::optional<Optimization>& optimization) {
+  const LongWork told(backend, file.scene.name, 2);  // the flight, and the twin that judges it
   const double frames = out.empty() ? 0 : file.scene.frames_per_second;
-  const Rollout flight = rollout(backend, gains, {.frames_per_second = frames});
+  const Rollout flight =
+      rollout(backend, gains, {.frames_per_second = frames, .tail = animation.tail});
   if (diverged(flight)) {
     report_divergence(file.path, backend, flight);
     return ExitStatus::diverged;
   }
   const double growth = bounded_sensitivity(backend, flight);
   if (!out.empty()) {
-    write_output(out, [&](std::FILE* result) {
-      if (is_animated_mesh(out)) {
-        write_glb(result, file.scene.name, *file.mesh, flight.frame_times, flight.frame_positions);
-      } else {
+    if (is_animation(out)) {
+      write_animation(out, animate(file, flight, animation));
+    } else {
+      write_output(out, [&](std::FILE* result) {
         write_result(result, file.scene.name, backend, flight, growth, optimization);
-      }
-    });
+      });
+    }
   }
   print_summary(people(out), file.scene.name, backend, flight, growth);
   if (file.mesh) {

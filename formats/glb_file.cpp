@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
 static_assert(std::endian::native == std::endian::little, "glTF's numbers are little-endian");
@@ -27,6 +28,7 @@ constexpr std::uint32_t magic = 0x46546C67, version = 2, json_chunk = 0x4E4F534A
 constexpr int float_type = 5126, index_type = 5125, vertex_data = 34962, index_data = 34963;
 
 /// The mesh as glTF wants it: a vertex has one texture point, so that one on a seam stands twice.
+/// Vertex i of the mesh is vertex i of ours; the twins stand behind them.
 struct Corners {
   std::vector<Index> vertex;   ///< of the mesh, for each of ours
   std::vector<Index> texture;  ///< its texture point; empty where the mesh has none
@@ -35,25 +37,35 @@ struct Corners {
 
 Corners split(const Mesh& mesh, const Points& shape) {
   Corners corners;
-  std::map<std::pair<Index, Index>, std::uint32_t> known;
   const bool textured = !mesh.texture_corners.empty();
-  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
-    std::vector<std::uint32_t> ours;
-    for (std::size_t k = 0; k < mesh.faces[f].size(); ++k) {
-      const Index vertex = mesh.faces[f][k];
-      const Index texture = textured ? mesh.texture_corners[f][k] : 0;
-      const auto [at, is_new] =
-          known.try_emplace({vertex, texture}, static_cast<std::uint32_t>(corners.vertex.size()));
-      if (is_new) {
-        corners.vertex.push_back(vertex);
-        if (textured) corners.texture.push_back(texture);
-      }
-      ours.push_back(at->second);
+  constexpr Index none = -1;
+  corners.vertex.resize(static_cast<std::size_t>(shape.cols()));
+  std::iota(corners.vertex.begin(), corners.vertex.end(), Index{0});
+  if (textured) corners.texture.resize(corners.vertex.size(), none);
+  std::map<std::pair<Index, Index>, Index> twins;  // by vertex and texture point
+  const auto ours = [&](Index vertex, Index texture) {
+    if (!textured) return vertex;
+    Index& first = corners.texture[static_cast<std::size_t>(vertex)];
+    if (first == none) first = texture;
+    if (first == texture) return vertex;
+    const auto [at, is_new] = twins.try_emplace({vertex, texture}, std::ssize(corners.vertex));
+    if (is_new) {
+      corners.vertex.push_back(vertex);
+      corners.texture.push_back(texture);
     }
-    for (const auto& [a, b, c] : triangulated(shape(Eigen::all, mesh.faces[f]))) {
-      corners.triangles.push_back({ours[static_cast<std::size_t>(a)],
-                                   ours[static_cast<std::size_t>(b)],
-                                   ours[static_cast<std::size_t>(c)]});
+    return at->second;
+  };
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    const std::vector<Index>& face = mesh.faces[f];
+    std::vector<std::uint32_t> around;
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Index texture = textured ? mesh.texture_corners[f][k] : 0;
+      around.push_back(static_cast<std::uint32_t>(ours(face[k], texture)));
+    }
+    for (const auto& [a, b, c] : triangulated(shape(Eigen::all, face))) {
+      corners.triangles.push_back({around[static_cast<std::size_t>(a)],
+                                   around[static_cast<std::size_t>(b)],
+                                   around[static_cast<std::size_t>(c)]});
     }
   }
   return corners;

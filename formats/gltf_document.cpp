@@ -6,7 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "file_text.h"
+#include "text_file.h"
 
 namespace nuno {
 namespace {
@@ -14,8 +14,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::size_t largest_file = 256 << 20, largest_json = 64 << 20;  // bytes
-constexpr std::size_t largest_buffers = 256 << 20;                        // bytes, all together
+constexpr std::size_t largest_json = 64 << 20;      // bytes
+constexpr std::size_t largest_buffers = 256 << 20;  // bytes, all together
 constexpr JsonLimits limits = {"glTF", 64, 2'000'000};
 
 // Numbers of the container.
@@ -140,7 +140,7 @@ const std::string& GltfItem::text() const {
 }
 
 GltfDocument::GltfDocument(const std::string& path) : path_(path) {
-  text_ = file_text(path, path, largest_file);
+  text_ = read_text(path, "a mesh");
   if (text_.starts_with(magic)) {
     split_container();
   } else {
@@ -215,7 +215,7 @@ std::string GltfDocument::load(const GltfItem& uri) const {
   if (!fs::is_regular_file(file, error)) {
     uri.at.refuse(fmt::format("{} is not there, or no file", shown(uri.value)));
   }
-  return file_text(file.string(),
+  return read_text(file.string(), "numbers of a mesh",
                    fmt::format("{}: {}: {}", path_, uri.at.pointer, shown(uri.value)),
                    largest_buffers);
 }

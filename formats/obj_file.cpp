@@ -1,72 +1,23 @@
 #include <nuno/mesh.h>
 
-#include <nuno/output.h>
+#include <nuno/mesh_fault.h>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <ranges>
 #include <string_view>
 
+#include "text_file.h"
+
 namespace nuno {
 namespace {
 
 constexpr std::size_t most_corners = 1000;  // of a face
-
-/// A place of the file, for messages.
-struct Line {
-  const std::string& source;
-  Index number = 0;
-
-  [[noreturn]] void refuse(std::string_view value, const std::string& rule) const {
-    std::string text = printable(std::string(value.substr(0, 60)));
-    throw InputError(fmt::format("{}:{}: {} {}", source, number, text, rule));
-  }
-};
-
-constexpr std::string_view blanks = " \t\r\v\f";
-
-/// Cuts the next word off `rest`; empty at its end.
-std::string_view next_word(std::string_view& rest) {
-  const std::size_t start = std::min(rest.find_first_not_of(blanks), rest.size());
-  const std::size_t end = std::min(rest.find_first_of(blanks, start), rest.size());
-  const std::string_view word = rest.substr(start, end - start);
-  rest.remove_prefix(end);
-  return word;
-}
-
-double number(std::string_view word, const Line& line) {
-  std::string_view digits = word;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) return value;  // too small, or refused by the scene
-  if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value)) {
-    line.refuse(word, "is not a number");
-  }
-  return value;
-}
-
-/// An index of the file, from 1 on or from the back, as one from 0 on.
-Index index(std::string_view text, std::string_view word, Index count, const char* of,
-            const Line& line) {
-  Index value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    line.refuse(word, "is not a corner: v, v/vt, v//vn or v/vt/vn");
-  }
-  const Index from_front = value > 0 ? value - 1 : count + value;
-  if (value == 0 || from_front < 0 || from_front >= count) {
-    line.refuse(word, fmt::format("names a {} that is not among the {} above", of, count));
-  }
-  return from_front;
-}
 
 struct Corner {
   Index vertex = 0;
@@ -82,8 +33,9 @@ Corner corner(std::string_view word, Index vertices, Index textures, const Line&
     parts[count] = word.substr(start, end - start);
     start = end + 1;
   }
-  Corner result{index(parts[0], word, vertices, "vertex", line), {}};
-  if (!parts[1].empty()) result.texture = index(parts[1], word, textures, "texture point", line);
+  Corner result{obj_index(parts[0], word, vertices, "vertex", line), {}};
+  if (!parts[1].empty())
+    result.texture = obj_index(parts[1], word, textures, "texture point", line);
   return result;
 }
 
@@ -96,13 +48,13 @@ struct Reader {
   Index vertex_count() const { return static_cast<Index>(vertices.size() / 3); }
   Index texture_count() const { return static_cast<Index>(textures.size() / 2); }
 
-  static void read_numbers(std::string_view rest, std::size_t count, const Line& line,
-                           std::vector<double>& into) {
+  static void read_numbers(std::string_view statement, std::string_view rest, std::size_t count,
+                           const Line& line, std::vector<double>& into) {
     const std::string_view all = rest;
     for (std::size_t k = 0; k < count; ++k) {
       const std::string_view word = next_word(rest);
       if (word.empty()) {
-        line.refuse(all.empty() ? "\"\"" : all, fmt::format("has not {} numbers", count));
+        line.refuse(all.empty() ? statement : all, fmt::format("has not {} numbers", count));
       }
       into.push_back(number(word, line));
     }
@@ -121,6 +73,9 @@ struct Reader {
     std::vector<Index>& face = mesh.faces.emplace_back();
     std::vector<Index>& texture = mesh.texture_corners.emplace_back();
     for (const Corner& each : corners) {
+      if (std::ranges::find(face, each.vertex) != face.end()) {
+        line.refuse(all, fmt::format("has vertex {} twice", each.vertex + 1));
+      }
       face.push_back(each.vertex);
       texture.push_back(each.texture.value_or(0));
       all_textured = all_textured && each.texture;
@@ -129,16 +84,16 @@ struct Reader {
   }
 
   void read_line(std::string_view rest, const Line& line) {
-    rest = rest.substr(0, rest.find('#'));
     const std::string_view word = next_word(rest);
     static constexpr std::array<std::string_view, 24> passed_over = {
         "vn",     "vp",     "g",      "o",     "s",        "usemtl",   "mtllib",     "l",
         "p",      "lod",    "mg",     "bevel", "c_interp", "d_interp", "shadow_obj", "trace_obj",
         "usemap", "maplib", "cstype", "deg",   "end",      "parm",     "curv",       "surf"};
     if (word == "v") {
-      read_numbers(rest, 3, line, vertices);
+      read_numbers(word, rest, 3, line, vertices);
+      mesh.vertex_lines.push_back(line.number);
     } else if (word == "vt") {
-      read_numbers(rest, 2, line, textures);
+      read_numbers(word, rest, 2, line, textures);
     } else if (word == "f" || word == "fo") {
       read_face(rest, line);
     } else if (!word.empty() && std::ranges::find(passed_over, word) == passed_over.end()) {
@@ -151,29 +106,9 @@ struct Reader {
 
 Mesh parse_obj(const std::string& text, const std::string& source) {
   Reader reader;
-  Line line{source};
-  std::string joined;  // of lines that end in a backslash
-  Index next_line = 1;
-  for (std::size_t start = 0; start < text.size();) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    std::string_view raw(text.data() + start, end - start);
-    start = end + 1;
-    if (joined.empty()) line.number = next_line;
-    ++next_line;
-    while (raw.ends_with('\r')) raw.remove_suffix(1);
-    if (raw.ends_with('\\')) {
-      raw.remove_suffix(1);
-      joined.append(raw).append(" ");
-      continue;
-    }
-    if (joined.empty()) {
-      reader.read_line(raw, line);
-    } else {
-      reader.read_line(joined.append(raw), line);
-      joined.clear();
-    }
-  }
-  if (!joined.empty()) reader.read_line(joined, line);
+  for_each_obj_line(text, source, [&](std::string_view words, const Line& line) {
+    reader.read_line(words, line);
+  });
   Mesh mesh = std::move(reader.mesh);
   if (mesh.faces.empty())
     throw InputError(fmt::format("{}: has no face (f); a mesh is required", source));
@@ -242,6 +177,7 @@ void cut_polygons(Mesh& mesh) {
     for (const auto& places : triangulated(mesh.vertices(Eigen::all, face))) {
       add([&](const std::vector<Index>& corners) {
         std::vector<Index> three;
+        three.reserve(places.size());
         for (const Index place : places) three.push_back(corners[static_cast<std::size_t>(place)]);
         return three;
       });
@@ -263,6 +199,38 @@ std::string numbers_in_file(const Mesh& mesh, std::vector<Index> face) {
     vertex += mesh.first_number;
   }
   return fmt::format("{}", fmt::join(face, " "));
+}
+
+namespace {
+
+[[noreturn]] void refuse(const Mesh& mesh, const std::string& path, const MeshFault& fault) {
+  const auto number = static_cast<std::size_t>(fault.number);
+  switch (fault.at) {
+    case MeshFault::At::mesh:
+      break;
+    case MeshFault::At::face:
+      throw InputError(fmt::format("{}: face {}: {}", face_place(mesh, path, number),
+                                   numbers_in_file(mesh, mesh.faces[number]), fault.what));
+    case MeshFault::At::vertex:
+      throw InputError(fmt::format(
+          "{}{}: vertex {}: {}", path,
+          mesh.vertex_lines.empty() ? "" : fmt::format(":{}", mesh.vertex_lines[number]),
+          numbers_in_file(mesh, {fault.number}), fault.what));
+  }
+  throw InputError(fmt::format("{}: {}", path, fault.what));
+}
+
+}  // namespace
+
+void require_sheet(const Mesh& mesh, const std::string& path) {
+  require_pose(mesh, path);
+  if (const auto fault = mesh_fault(mesh.vertices, mesh.faces, mesh.first_number)) {
+    refuse(mesh, path, *fault);
+  }
+}
+
+void require_pose(const Mesh& pose, const std::string& path) {
+  if (const auto fault = vertex_fault(pose.vertices)) refuse(pose, path, *fault);
 }
 
 void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& pose,

@@ -1,3 +1,4 @@
+#include <nuno/input.h>
 #include <nuno/materials.h>
 #include <nuno/scene_file.h>
 
@@ -7,8 +8,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
@@ -16,6 +15,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "compact_json.h"
 #include "json_field.h"
 
 namespace nuno {
@@ -85,19 +85,16 @@ void read(const Json& object, const Field& parent, const char* name, std::string
 }
 
 void read(const Json& object, const Field& parent, const char* name, Points& into) {
-  const Field at = parent.child(name);
   const Json& points = object[name];
-  if (!points.is_array()) at.refuse(fmt::format("{} is not an array of points", shown(points)));
-  into.resize(2, static_cast<Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Field point_at = at.child(std::to_string(i));
-    if (!points[i].is_array() || points[i].size() != 2) {
-      point_at.refuse(fmt::format("{} is not a point [x, y]", shown(points[i])));
-    }
-    for (std::size_t row = 0; row < 2; ++row) {
-      into(static_cast<Index>(row), static_cast<Index>(i)) =
-          number(points[i][row], point_at.child(std::to_string(row)));
-    }
+  if (points.is_array()) {  // only one without points comes as a list
+    into.resize(2, 0);
+    return;
+  }
+  const Field at = parent.child(name);
+  if (!points.is_binary()) at.refuse(fmt::format("{} is not an array of points", shown(points)));
+  into = points_of(points);
+  if (into.rows() != 2) {
+    at.child("0").refuse(fmt::format("[{}] is not a point [x, y]", fmt::join(into.col(0), ",")));
   }
 }
 
@@ -138,8 +135,8 @@ std::string_view word_for(const Words& words, Enum value) {
   return std::ranges::find(words, value, [](const auto& word) { return word.value; })->text;
 }
 
-// A scene is three deep; what is far larger than a million points is none.
-constexpr JsonLimits limits = {"a scene", 16, 50'000'000};
+/// A scene's fields take numbers and words, but for its shapes.
+const JsonForm scene_form = {.points = {{"/initial", 0}, {"/target", 0}}, .longest_list = 64};
 
 Json to_json(const Points& points) {
   Json array = Json::array();
@@ -204,7 +201,7 @@ struct FieldReader {
 /// Notes each field's name.
 struct FieldLister {
   std::vector<std::string_view>& names;
-  void operator()(const char* name, const auto&...) const { names.push_back(name); }
+  void operator()(const char* name, const auto&...) const { names.emplace_back(name); }
 };
 
 /// Writes each field that has a value.
@@ -223,7 +220,7 @@ struct FieldWriter {
 template <typename SceneOf>
 void require_fields(const Json& json, const Field& root) {
   std::vector<std::string_view> known = {"nuno_scene", "initial", "target", "cloth"};
-  if constexpr (std::is_same_v<SceneOf, SheetScene>) known.push_back("material");
+  if constexpr (std::is_same_v<SceneOf, SheetScene>) known.emplace_back("material");
   SceneOf scene;
   visit_first(scene, FieldLister{known});
   visit_last(scene, FieldLister{known});
@@ -276,7 +273,8 @@ void read_named_material(const Json& json, const Field& root, SheetMaterial& clo
   }
 }
 
-SheetInput read_sheet(const Json& json, const std::string& source) {
+SheetInput read_sheet(const Json& json, const std::string& source,
+                      const std::filesystem::path& folder) {
   const Field root{source, ""};
   require_fields<SheetScene>(json, root);
   std::string initial, target;
@@ -288,33 +286,23 @@ SheetInput read_sheet(const Json& json, const std::string& source) {
   read_named_material(json, root, scene.cloth);
   read_material(json, root, scene.cloth);
   visit_last(scene, FieldReader{json, root});
-  const std::filesystem::path folder = std::filesystem::path(source).parent_path();
   return with_meshes(std::move(scene), (folder / initial).string(), (folder / target).string(),
                      source);
 }
 
-std::string text_of(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{}: /: is a directory, not a scene file", path));
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: /: cannot be opened for reading", path));
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) throw InputError(fmt::format("{}: /: cannot be read", path));
-  return text;
-}
-
 }  // namespace
 
-AnyScene read_scene(const std::string& path) {
-  const Json json = parse_json<Json>(text_of(path), path, limits);
-  if (is_sheet(json)) return read_sheet(json, path);
-  return read_chain(json, path);
+AnyScene read_scene(const std::string& path) { return parse_any_scene(read_input(path), path); }
+
+AnyScene parse_any_scene(const std::string& text, const std::string& path) {
+  const std::string source = name_of_input(path);
+  const Json json = parse_compact(text, source, scene_form);
+  if (is_sheet(json)) return read_sheet(json, source, std::filesystem::path(path).parent_path());
+  return read_chain(json, source);
 }
 
 ChainScene parse_scene(const std::string& text, const std::string& source) {
-  const Json json = parse_json<Json>(text, source, limits);
+  const Json json = parse_compact(text, source, scene_form);
   if (is_sheet(json)) {
     const Field at = Field{source, ""}.child("initial");
     at.refuse("a mesh file is not read here; give the points of a chain");
@@ -340,6 +328,8 @@ SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::
   weld_seams(start, end);
   require_same_faces(start, initial, end, target);
   cut_polygons(start);
+  require_sheet(start, initial);
+  require_pose(end, target);
   for (const std::string& remark : end.remarks) {
     if (std::ranges::find(start.remarks, remark) == start.remarks.end()) {
       start.remarks.push_back(remark);

@@ -82,10 +82,10 @@ TEST_F(Result, OfRefinementWithinALimitIsNoWorseThanOfTheGainAlone) {
 TEST_F(Result, HasEveryFieldAndNoNull) {
   const Json result = simulated({"simulate", scene("s-curve-32"), "--alpha", "0.0181"});
   const std::set<std::string> expected = {
-      "nuno_result",    "scene",      "backend",         "status",       "alpha",
-      "time_step",      "steps",      "cloth_length",    "target_scale", "error",
-      "control_effort", "final",      "launch_velocity", "target",       "frames",
-      "max_strain",     "sensitivity"};
+      "nuno_result",    "scene",       "backend",         "status",       "alpha",
+      "time_step",      "steps",       "cloth_length",    "target_scale", "error",
+      "control_effort", "final",       "launch_velocity", "target",       "frames",
+      "max_strain",     "sensitivity", "final_velocity"};
   std::set<std::string> fields;
   for (const auto& item : result.items()) fields.insert(item.key());
   EXPECT_EQ(fields, expected);
@@ -93,7 +93,7 @@ TEST_F(Result, HasEveryFieldAndNoNull) {
   EXPECT_EQ(result["backend"], "native");
   EXPECT_EQ(result["status"], "ok");
   EXPECT_FALSE(has_null(result));
-  for (const char* shape : {"launch_velocity", "target", "final"}) {
+  for (const char* shape : {"launch_velocity", "target", "final", "final_velocity"}) {
     EXPECT_EQ(result[shape].size(), 32u) << shape;
   }
 }

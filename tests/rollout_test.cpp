@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <stop_token>
+#include <vector>
 
 #include "scene_library.h"
 
@@ -47,6 +49,56 @@ TEST(Rollout, SaysWhereAndWhyItDiverged) {
   EXPECT_GT(flight.diverged_at_step, 0);
   EXPECT_LE(flight.diverged_at_step, backend->steps());
   EXPECT_EQ(flight.error.mean, std::numeric_limits<double>::infinity());
+}
+
+TEST(Rollout, FliesOnWithoutControlAfterArrival) {
+  const auto backend = native::make_backend(make_problem(scene_library::straight_to_s()));
+  const Rollout arriving = rollout(*backend, 0.05, {.frames_per_second = 30});
+  const Rollout flight = rollout(*backend, 0.05, {.frames_per_second = 30, .tail = 0.5});
+  EXPECT_EQ(flight.final, arriving.final);
+  EXPECT_EQ(flight.error.mean, arriving.error.mean);
+  EXPECT_EQ(flight.control_effort, arriving.control_effort);
+  ASSERT_EQ(flight.frame_times.size(), arriving.frame_times.size() + 15);
+  EXPECT_EQ(flight.frame_positions[30], flight.final);
+  // Internal forces do not move the centroid: it flies on as a lone particle does.
+  const DragRecurrence drag = backend->drag_recurrence();
+  Eigen::VectorXd x = centroid(flight.final), v = centroid(flight.final_velocity);
+  const Eigen::Vector2d g(0, backend->cloth().gravity);
+  for (Index n = 0; 2 * n < backend->steps(); ++n) {
+    v = drag.r * v - drag.q * g;
+    x += drag.h * v;
+  }
+  EXPECT_NEAR(flight.frame_times.back(), 1.5, 1e-12);
+  EXPECT_LT((centroid(flight.frame_positions.back()) - x).norm(), 1e-12);
+}
+
+TEST(Rollout, UnderNoControlDoesNotFeelItsArrival) {
+  ChainScene scene = scene_library::straight_to_s();
+  const auto backend = native::make_backend(make_problem(scene));
+  const Rollout flight = rollout(*backend, 0, {.frames_per_second = 40, .tail = 0.25});
+  const auto cloth = backend->start(flight.launch_velocity);
+  const Points no_forces = Points::Zero(2, backend->cloth().particles());
+  for (Index n = 0; 4 * n < 5 * backend->steps(); ++n) cloth->step(no_forces);
+  EXPECT_LT((flight.frame_positions.back() - cloth->positions()).norm(), 1e-9);
+  EXPECT_EQ(flight.frame_times.back(), 1.25);
+}
+
+TEST(Rollout, EndsWhereItIsAskedToStop) {
+  ChainScene scene = scene_library::straight_to_s();
+  Problem problem = make_problem(scene);
+  std::stop_source source;
+  problem.stop = source.get_token();
+  const auto backend = native::make_backend(problem);
+  const std::vector<double> gains(20, 0.01);
+  CorrectionDirections directions;
+  directions.powers = {1};
+  directions.shapes.setOnes(backend->cloth().initial.size(), 1);
+  EXPECT_EQ(rollout(*backend, 0.01).status, RolloutStatus::ok);
+  source.request_stop();
+  EXPECT_THROW(rollout(*backend, 0.01), Stopped);
+  EXPECT_THROW(backend->errors(gains), Stopped);
+  EXPECT_THROW(backend->error_samples(gains), Stopped);
+  EXPECT_THROW(backend->jacobian(0.01, directions), Stopped);
 }
 
 TEST(Perturbation, MovesByItsSizeAndStretchesNothing) {

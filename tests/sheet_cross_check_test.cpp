@@ -10,7 +10,6 @@
 
 #include "engines.h"
 #include "sheets.h"
-#include "thrown_sheet.h"
 
 namespace nuno {
 namespace {

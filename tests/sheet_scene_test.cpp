@@ -47,14 +47,15 @@ TEST_P(MalformedSheet, IsRefusedWithFieldValueAndRule) {
 INSTANTIATE_TEST_SUITE_P(
     Meshes, MalformedSheet,
     testing::Values(
-        BadMesh{[](SheetScene& s) { s.faces.clear(); }, "/faces: 0 faces are not at least one"},
+        BadMesh{[](SheetScene& s) { s.faces.clear(); }, "/initial: 0 faces are not at least one"},
         BadMesh{[](SheetScene& s) { s.faces[1].resize(2); }, "/faces/1: 2 corners are not 3 or 4"},
         BadMesh{[](SheetScene& s) {
                   s.faces[1] = {0, 1, 2, 5, 4};
                 },
                 "/faces/1: 5 corners are not 3 or 4"},
-        BadMesh{[](SheetScene& s) { s.faces[2][3] = 9; }, "/faces/2/3: 9 is not within 0 … 8"},
-        BadMesh{[](SheetScene& s) { s.faces[2][3] = -1; }, "/faces/2/3: -1 is not within 0 … 8"},
+        BadMesh{[](SheetScene& s) { s.faces[2][3] = 9; }, "/faces/2: vertex 9 is not within 0 … 8"},
+        BadMesh{[](SheetScene& s) { s.faces[2][3] = -1; },
+                "/faces/2: vertex -1 is not within 0 … 8"},
         BadMesh{[](SheetScene& s) { s.faces[0][3] = 3; },
                 "/faces/0: vertex 3 stands twice in the face"},
         BadMesh{[](SheetScene& s) { s.initial.col(4) = s.initial.col(1); },
@@ -83,15 +84,15 @@ INSTANTIATE_TEST_SUITE_P(
             [](SheetScene& s) {
               s.faces = {{0, 3, 1}, {2, 4, 5}, {6, 7, 4}, {8, 5, 7}};
             },
-            "/faces: are separate sheets, not a single one: nothing holds vertex 2 to vertex 0"},
+            "/initial: are separate sheets, not a single one: nothing holds vertex 2 to vertex 0"},
         BadMesh{[](SheetScene& s) { s.target.conservativeResize(3, 8); },
                 "/target: 8 vertices are not the 9 of /initial"},
         BadMesh{[](SheetScene& s) { s.initial.conservativeResize(2, 9); },
                 "/initial: vertices of 2 numbers have not 3"},
         BadMesh{[](SheetScene& s) { s.initial(1, 5) = std::nan(""); },
-                "/initial/5/1: nan is not within ±1000000000000"},
+                "/initial/5: nan is not within ±1000000000000"},
         BadMesh{[](SheetScene& s) { s.target(2, 0) = -std::numeric_limits<double>::infinity(); },
-                "/target/0/2: -inf is not within ±1000000000000"},
+                "/target/0: -inf is not within ±1000000000000"},
         BadMesh{[](SheetScene& s) { s.target.setZero(); },
                 "/target: size 0 is not >= 1e-12 and 1e-09 of its distance from the origin"},
         BadMesh{[](SheetScene& s) { s.target = (0x1p-10 * s.target).array() + 0x1p31; },

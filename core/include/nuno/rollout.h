@@ -11,6 +11,8 @@ namespace nuno {
 struct RolloutOptions {
   /// Frames kept per second of flight [1/s], the first at t = 0 and one at t₀; 0 keeps none.
   double frames_per_second = 0;
+  /// Flight after arrival, without control, whose frames are kept as well [s].
+  double tail = 0;
 };
 
 enum class RolloutStatus { ok, diverged };
@@ -21,6 +23,7 @@ struct Rollout {
   Gains gains = 0;            ///< α of every group [N/m]
   Points launch_velocity;     ///< [d × N], m/s
   Points final;               ///< positions at arrival [d × N], m
+  Points final_velocity;      ///< mean over the last step before it [d × N], m/s
   ArrivalError error;         ///< infinite where the rollout diverged
   double control_effort = 0;  ///< rms over particles and time of control force / particle weight
   double max_strain = 0;      ///< largest |l/ℓ − 1| of an edge on the way

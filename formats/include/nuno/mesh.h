@@ -16,8 +16,10 @@ struct Mesh {
   Points texture_coordinates;  ///< [2 × any]; without columns where the file has none
   /// Of each face's corners, their columns in texture_coordinates; empty where the file has none.
   Faces texture_corners;
-  std::vector<Index> lines;  ///< of the file, on which each face stands; empty where it has none
-  Index first_number = 0;    ///< that the file gives to its first vertex
+  // Lines of the file, for messages; empty where it has none.
+  std::vector<Index> lines;         ///< on which each face stands
+  std::vector<Index> vertex_lines;  ///< on which each vertex stands
+  Index first_number = 0;           ///< that the file gives to its first vertex
   /// Whether a vertex of the file has a single texture point and normal, so that exporters write
   /// one on a seam several times.
   bool splits_seams = false;
@@ -67,6 +69,12 @@ void cut_polygons(Mesh& mesh);
 /// not convex is cut right: three columns each.
 std::vector<std::array<Index, 3>> triangulated(const Points& polygon);
 
+/// Throws InputError, with file and line, for a mesh whose faces are no sheet at rest (see
+/// scene.h).
+void require_sheet(const Mesh& mesh, const std::string& path);
+
+/// The same for a pose of it, of which only the vertices count.
+void require_pose(const Mesh& pose, const std::string& path);
 /// A face for messages: the file and the face's line or number, and its corners' numbers there.
 std::string face_place(const Mesh& mesh, const std::string& path, std::size_t face);
 std::string numbers_in_file(const Mesh& mesh, std::vector<Index> face);

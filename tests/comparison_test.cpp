@@ -1,0 +1,207 @@
+// Two engines side by side, of which every error is known.
+
+#include <nuno/comparison.h>
+#include <nuno/conditioning.h>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "scripted_engine.h"
+
+namespace nuno {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+double best_at_one(double gain) { return 0.25 + (gain - 1) * (gain - 1); }
+double best_at_two(double gain) { return 0.5 + (gain - 2) * (gain - 2); }
+
+TEST(CompareEngines, HasEveryNumberOfBothInItsPlace) {
+  const ScriptedBackend first = engine_of_error(best_at_one);
+  const ScriptedBackend second = engine_of_error(best_at_two);
+  std::atomic<int> rollouts = 0;
+  const Comparison found =
+      compare_engines("name", first, second, {.before_rollout = [&] { ++rollouts; }});
+  const double length = first.cloth().size, unit = effort_unit(first.problem());
+  ASSERT_FALSE(found.divergence);
+  EXPECT_EQ(found.scene, "name");
+  EXPECT_EQ(found.cloth_length, length);
+  EXPECT_EQ(found.launch, Launch::ballistic);
+
+  const auto& [one, two] = found.rows;
+  EXPECT_EQ(one.backend, "scripted");
+  EXPECT_DOUBLE_EQ(one.launch_only_error, best_at_one(0));
+  EXPECT_DOUBLE_EQ(two.launch_only_error, best_at_two(0));
+  EXPECT_NEAR(one.gain, 1, 0.01);
+  EXPECT_NEAR(two.gain, 2, 0.01);
+  EXPECT_NEAR(one.error.mean, best_at_one(one.gain), 1e-12);
+  EXPECT_NEAR(two.error.mean, best_at_two(two.gain), 1e-12);
+  EXPECT_NEAR(one.control_effort, one.gain / unit, 1e-12 / unit);
+  EXPECT_NEAR(one.error_with_the_other_gain, best_at_one(two.gain), 1e-12);
+  EXPECT_NEAR(two.error_with_the_other_gain, best_at_two(one.gain), 1e-12);
+  // Both miss by the same pattern; at the first one's gain they differ by as much as the errors do.
+  const double apart = best_at_two(one.gain) - best_at_one(one.gain);
+  EXPECT_NEAR(found.shape_difference.mean, apart / length, 1e-12);
+  EXPECT_NEAR(found.shape_difference.max, apart / length, 1e-12);
+
+  ASSERT_EQ(found.curve_gains.size(), 65u);
+  EXPECT_EQ(found.curve_gains[0], 0);
+  for (std::size_t i = 0; i < found.curve_gains.size(); ++i) {
+    const double gain = found.curve_gains[i];
+    EXPECT_NEAR(found.curve_errors[0][i], best_at_one(gain), 1e-11);
+    EXPECT_NEAR(found.curve_errors[1][i], best_at_two(gain), 1e-11);
+    EXPECT_NEAR(found.curve_efforts[1][i], gain / unit, 1e-12 * gain / unit);
+    EXPECT_EQ(found.curve_sensitivity[i], 0);  // they forget how they started
+    EXPECT_GT(found.curve_strain[i], 0);
+    // 1, 10⁻²: log-spaced.
+    if (i > 1) {
+      EXPECT_NEAR(std::log(gain / found.curve_gains[i - 1]),
+                  std::log(found.curve_gains.back() / found.curve_gains[1]) / 63, 1e-12);
+    }
+  }
+  // Launch only, the best, its twin, the other's best; and the curves with the first one's twins.
+  EXPECT_EQ(rollouts, 2 * 4 + 3 * 65);
+}
+
+TEST(CompareEngines, EndsWithTheFirstRolloutThatDiverges) {
+  const ScriptedBackend calm = engine_of_error(best_at_one);
+  const ScriptedBackend wild =
+      engine_of_error([](double gain) { return gain > 0.5 && gain < 1.5 ? nan : 1 + gain; });
+  EXPECT_TRUE(compare_engines("", calm, wild).divergence);  // at the calm one's best
+  EXPECT_TRUE(compare_engines("", calm, engine_of_error([](double) { return nan; })).divergence);
+  const ScriptedBackend beyond =
+      engine_of_error([](double gain) { return gain > 2 ? nan : best_at_one(gain); });
+  const Comparison whole = compare_engines("", calm, beyond);
+  EXPECT_FALSE(whole.divergence);  // on the curve alone: infinite there
+  EXPECT_EQ(whole.curve_errors[1].back(), infinity);
+  EXPECT_EQ(whole.curve_efforts[1].back(), infinity);
+  EXPECT_LT(whole.curve_errors[0].back(), infinity);
+}
+
+TEST(Spread, IsTheMedianTheNineteenOfTwentyAndTheWorst) {
+  const Spread of_five = spread({4, 1, 5, 2, 3});
+  EXPECT_EQ(of_five.median, 3);
+  EXPECT_EQ(of_five.most, 5);  // the nearest of the values to place 3.8 from 0
+  EXPECT_EQ(of_five.worst, 5);
+  std::vector<double> many;
+  for (int i = 40; i >= 0; --i) many.push_back(i);
+  EXPECT_EQ(spread(many).median, 20);
+  EXPECT_EQ(spread(many).most, 38);
+  EXPECT_EQ(spread(many).worst, 40);
+  EXPECT_EQ(spread({}).worst, 0);
+}
+
+/// A calm comparison with a gap and two points of a curve.
+Comparison calm() {
+  Comparison comparison;
+  comparison.cloth_length = 2;
+  comparison.launch = Launch::inextensible;
+  comparison.rows[0].error.mean = 0.5;
+  comparison.rows[0].error_with_the_other_gain = 0.55;
+  comparison.rows[1].error.mean = 0.4;
+  comparison.rows[1].error_with_the_other_gain = 0.6;
+  comparison.shape_difference = {.mean = 1e-4, .max = 1};
+  comparison.curve_gains = {0, 1};
+  comparison.curve_errors = {std::vector<double>{0.5, 1e-3}, {0.5, 1e-3}};
+  comparison.curve_efforts = comparison.curve_errors;
+  comparison.curve_sensitivity = comparison.curve_strain = {0, 0};
+  return comparison;
+}
+
+TEST(Summary, JudgesWellConditionedScenesThatAreLaunchedWithoutStretching) {
+  Comparison fragile = calm(), stretched = calm(), ballistic = calm();
+  fragile.rows[0].sensitivity = largest_calm_sensitivity * 1.01;
+  stretched.rows[0].max_strain = largest_calm_strain * 1.01;
+  ballistic.launch = Launch::ballistic;
+  EXPECT_TRUE(is_well_conditioned(calm()));
+  EXPECT_FALSE(is_well_conditioned(fragile));
+  EXPECT_FALSE(is_well_conditioned(stretched));
+  Comparison edge = calm();  // what is at a limit is calm, and the second engine has no say
+  edge.rows[0].sensitivity = largest_calm_sensitivity;
+  edge.rows[0].max_strain = largest_calm_strain;
+  edge.rows[1].sensitivity = infinity;
+  EXPECT_TRUE(is_well_conditioned(edge));
+
+  const ComparisonSummary summary = summarize({calm(), fragile, stretched, ballistic, edge});
+  EXPECT_EQ(summary.scenes, 5u);
+  EXPECT_EQ(summary.well_conditioned, 3u);
+  EXPECT_EQ(summary.judged, 2u);
+  EXPECT_EQ(summary.gap.median, 1e-4);
+  EXPECT_EQ(summary.curve_points, 4u);
+  EXPECT_EQ(summary.curve_agreement, 1);
+  EXPECT_NEAR(summary.loss.worst, 0.5, 1e-12);   // 0.6 over 0.4
+  EXPECT_NEAR(summary.loss.median, 0.5, 1e-12);  // the upper one of 0.1 and 0.5, twice each
+  EXPECT_EQ(summarize({}).curve_agreement, 0);
+}
+
+// 2 % of the error, or a thousandth of the length, whichever is more.
+TEST(Summary, CallsCurvesAgreedWithinTheLargerOfTwoLimits) {
+  const auto agreement = [](double error, double other) {
+    Comparison comparison = calm();
+    comparison.curve_errors[0] = {error, error};
+    comparison.curve_errors[1] = {other, error};
+    return summarize({comparison}).curve_agreement;
+  };
+  EXPECT_EQ(agreement(0.5, 0.5099), 1);
+  EXPECT_EQ(agreement(0.5, 0.5101), 0.5);
+  EXPECT_EQ(agreement(0.5, 0.4901), 1);
+  EXPECT_EQ(agreement(0.5, 0.4899), 0.5);
+  EXPECT_EQ(agreement(0.01, 0.0119), 1);
+  EXPECT_EQ(agreement(0.01, 0.0121), 0.5);
+  EXPECT_EQ(agreement(0.01, infinity), 0.5);
+  Comparison fragile_there = calm();
+  fragile_there.curve_errors[1][0] = infinity;
+  fragile_there.curve_sensitivity[0] = infinity;
+  EXPECT_EQ(summarize({fragile_there}).curve_points, 1u);
+  EXPECT_EQ(summarize({fragile_there}).curve_agreement, 1);
+}
+
+TEST(Conditioning, BoundsAGrowthThatLeavesNothingInCommon) {
+  const auto growing = [](double growth) {
+    const ScriptedBackend engine(problem_of(cross()), 2, [=](const Moment& now) -> Points {
+      return cross() + growth * (now.positions - cross());
+    });
+    return bounded_sensitivity(engine, rollout(engine, 0));
+  };
+  EXPECT_NEAR(growing(3), 9, 1e-6);
+  EXPECT_EQ(growing(1e5), 1e8);  // 10¹⁰, but a perturbation is 10⁻⁸ of the cloth
+  EXPECT_EQ(growing(1e8), 1e8);  // torn
+}
+
+TEST(Conditioning, CallsAGrowthAboveTenFragile) {
+  EXPECT_EQ(fragility(10), "");
+  EXPECT_NE(fragility(10.1), "");
+  EXPECT_NE(fragility(infinity), "");
+  EXPECT_EQ(fragility(nan), "");
+}
+
+TEST(Conditioning, KnowsARolloutWithoutAnAnswer) {
+  Rollout flight;
+  flight.final = cross();
+  EXPECT_FALSE(diverged(flight));
+  for (double* number : {&flight.error.mean, &flight.error.max, &flight.error.centroid,
+                         &flight.control_effort, &flight.final(1, 2)}) {
+    const double right = *number;
+    *number = infinity;
+    EXPECT_TRUE(diverged(flight));
+    *number = right;
+  }
+  flight.status = RolloutStatus::diverged;
+  EXPECT_TRUE(diverged(flight));
+}
+
+TEST(Conditioning, TellsWhereAndWhyARolloutDiverged) {
+  const ScriptedBackend engine(problem_of(cross()), 5, [](const Moment& now) -> Points {
+    return now.step < 3 ? cross() : nan * cross();
+  });
+  EXPECT_EQ(divergence_message("file", engine, rollout(engine, 2)),
+            "file: diverged on scripted at α = 2 N/m in step 3 of 5: a particle's position is no "
+            "longer finite");
+}
+
+}  // namespace
+}  // namespace nuno

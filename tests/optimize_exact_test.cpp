@@ -1,0 +1,429 @@
+// The optimisers on objectives whose answers, and the way to them, are known exactly.
+
+#include <nuno/joint_search.h>
+#include <nuno/optimize.h>
+#include <nuno/pareto_front.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scripted_engine.h"
+
+namespace nuno {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Objective objective_of(const std::function<double(double gain)>& error) {
+  Objective objective;
+  objective.errors = [error](std::span<const double> gains) {
+    std::vector<double> errors;
+    for (const double gain : gains) errors.push_back(error(gain));
+    return errors;
+  };
+  return objective;
+}
+
+// ---- steepest descent --------------------------------------------------------------------------
+
+/// Falls with slope −1 from E = 1 at `start`; from half a gain further on it has fallen by `fall`.
+Objective slope_then_plain(double start, double fall) {
+  return objective_of([=](double gain) {
+    const double along = gain - start;
+    return along < 0.5 ? 1 - along : 1 - fall;
+  });
+}
+
+// The first move is one gain scale long, for which the derivative foretells a fall of 1.
+TEST(SteepestDescent, TakesAStepThatFallsByATenthOfWhatTheDerivativePredicts) {
+  for (const double start : {0.0, 2.0}) {  // one-sided and central differences
+    const OptimizeSummary summary =
+        steepest_descent(slope_then_plain(start, 0.11), {.first_gain = start});
+    ASSERT_GE(summary.history.size(), 2u);
+    EXPECT_NEAR(summary.history[1].gain, start + 1, 1e-9) << start;
+  }
+}
+
+TEST(SteepestDescent, HalvesAStepThatFallsByLess) {
+  for (const double start : {0.0, 2.0}) {
+    const OptimizeSummary summary =
+        steepest_descent(slope_then_plain(start, 0.09), {.first_gain = start});
+    ASSERT_GE(summary.history.size(), 2u);
+    // Half of the way falls by 0.09, which is a tenth of 0.5 and more.
+    EXPECT_NEAR(summary.history[1].gain, start + 0.5, 1e-9) << start;
+    EXPECT_LT(summary.history[1].gain, start + 0.6) << start;
+  }
+}
+
+TEST(SteepestDescent, GoesByTheDerivativeTimesAFactorThatDoubles) {
+  // E = (α − 3)²: from 0, where dE/dα = −6, by 1; then by twice as large a factor, 2/6, times 4.
+  // Differences of a parabola are its derivatives to rounding, 1e-16/1e-3.
+  const auto parabola = [](double gain) { return (gain - 3) * (gain - 3); };
+  const OptimizeSummary up = steepest_descent(objective_of(parabola));
+  ASSERT_GE(up.history.size(), 3u);
+  EXPECT_NEAR(up.history[1].gain, 1, 1e-9);
+  EXPECT_NEAR(up.history[2].gain, 1 + 4.0 / 3, 1e-9);
+  // And down: from 5, where it is 4, by 1; then by 2/4 times 2, onto it.
+  const OptimizeSummary down = steepest_descent(objective_of(parabola), {.first_gain = 5});
+  ASSERT_GE(down.history.size(), 3u);
+  EXPECT_NEAR(down.history[1].gain, 4, 1e-9);
+  EXPECT_NEAR(down.history[2].gain, 3, 1e-9);
+}
+
+TEST(SteepestDescent, MeasuresItsFirstStepInGainScales) {
+  Objective objective = objective_of([](double gain) { return 100 - gain; });
+  objective.gain_scale = 0.25;
+  objective.largest_gain = 3;
+  const OptimizeSummary summary = steepest_descent(objective, {.first_step = 2});
+  ASSERT_GE(summary.history.size(), 3u);
+  EXPECT_NEAR(summary.history[1].gain, 0.5, 1e-9);
+  EXPECT_NEAR(summary.history[2].gain, 1.5, 1e-9);
+  EXPECT_EQ(summary.gain, 3);
+  EXPECT_EQ(summary.status, OptimizeStatus::converged);
+}
+
+// ---- global search -----------------------------------------------------------------------------
+
+TEST(GlobalSearch, ScansFromZeroToItsLargestGain) {
+  Objective objective = objective_of([](double gain) { return 1 + gain; });
+  objective.gain_scale = 0.5;
+  const OptimizeSummary summary =
+      global_search(objective, {.smallest_gain = 0.1, .largest_gain = 40, .scan = 4, .rounds = 1});
+  EXPECT_EQ(summary.history.front().gain, 0);
+  EXPECT_NEAR(summary.history.back().gain, 0.5 * 40, 1e-12);
+  const auto scanned = [&](double gain) {
+    return std::ranges::any_of(summary.history, [&](const Evaluation& at) {
+      return std::abs(at.gain - gain) < 1e-12 * gain;
+    });
+  };
+  EXPECT_TRUE(scanned(0.5 * 0.1));
+}
+
+TEST(GlobalSearch, FindsAValleyBetweenZeroAndTheSmallestGainByValues) {
+  for (const double valley : {0.004, 0.007}) {
+    const OptimizeSummary summary = global_search(
+        objective_of([=](double gain) { return 1 + std::abs(gain - valley); }), {.rounds = 60});
+    EXPECT_NEAR(summary.gain, valley, 1e-4 * valley);
+  }
+}
+
+TEST(GlobalSearch, FindsAValleyAtEitherEndOfItsScanByValues) {
+  Objective objective =
+      objective_of([](double gain) { return 1 + std::abs(std::log(gain / 6.99)); });
+  objective.largest_gain = 7;
+  EXPECT_NEAR(global_search(objective, {.rounds = 60}).gain, 6.99, 1e-4);
+}
+
+/// One particle that arrives r(u) > 0 beside its target, u = √α, and tells `slope`(u) for dr/du.
+Objective beside_the_target(const std::function<double(double u)>& residual,
+                            const std::function<double(double u)>& slope) {
+  Objective objective = objective_of([=](double gain) { return residual(std::sqrt(gain)); });
+  objective.samples = [=](std::span<const double> gains) {
+    std::vector<ErrorSample> samples;
+    for (const double gain : gains) {
+      const double u = std::sqrt(gain);
+      ErrorSample& sample = samples.emplace_back();
+      sample.error = residual(u);
+      sample.residual = Eigen::Vector2d(residual(u), 0);
+      const double derivative = u > 0 ? slope(u) / (2 * u) : 0;
+      sample.derivatives.push_back({derivative, Eigen::Vector2d(derivative, 0)});
+    }
+    return samples;
+  };
+  return objective;
+}
+
+// At gain 0, a derivative along u says nothing of damped control.
+TEST(GlobalSearch, LooksForNothingBetweenZeroAndTheSmallestGainByDerivatives) {
+  const Objective objective = beside_the_target([](double u) { return 2 + std::cos(20 * u); },
+                                                [](double u) { return -20 * std::sin(20 * u); });
+  const OptimizeSummary summary = global_search(objective, {.largest_gain = 0.09, .scan = 4});
+  EXPECT_NEAR(summary.error, 1, 2e-6);  // its tolerance
+  for (const Evaluation& at : summary.history) {
+    EXPECT_TRUE(at.gain == 0 || at.gain >= 0.01 * (1 - 1e-9)) << at.gain;
+  }
+}
+
+/// Between the scanned u = 1 and 2, both with an error of 1, a level dip: what the derivatives
+/// foretell of it, and what is found.
+struct Dip {
+  double foretold, found;
+  double at_zero = 1;  ///< the error of launch only
+};
+OptimizeSummary search_a_dip(const Dip& dip) {
+  // The cubic of ends 1, 1 and slopes ∓4·depth has its least value, 1 − depth, in the middle.
+  const double slope = 4 * (1 - dip.foretold);
+  const auto residual = [=](double u) {
+    if (u == 0) return dip.at_zero;
+    return std::abs(u - 1.5) < 1e-3 ? dip.found : 1;
+  };
+  const auto derivative = [=](double u) {
+    return std::abs(u - 1) < 1e-9 ? -slope : std::abs(u - 2) < 1e-9 ? slope : 0.0;
+  };
+  return global_search(beside_the_target(residual, derivative),
+                       {.smallest_gain = 1, .largest_gain = 4, .scan = 3});
+}
+
+// Half of what a prediction was off is what those beside it are trusted to be off. Here they
+// foretell no less than the dip itself: the slope at either end is three times the mean one.
+TEST(GlobalSearch, GoesOnWhereWhatPredictionsWereOffMayHideABetterGain) {
+  EXPECT_EQ(search_a_dip({.foretold = 0.8, .found = 0.8}).evaluations, 4);
+  // Off by 0.15, and nothing is better: on to both sides, where all is as foretold.
+  EXPECT_EQ(search_a_dip({.foretold = 0.55, .found = 0.7}).evaluations, 6);
+  // A best of 0.07 less may be beaten beside it, one of 0.08 less is not.
+  EXPECT_EQ(search_a_dip({.foretold = 0.55, .found = 0.7, .at_zero = 0.63}).evaluations, 6);
+  EXPECT_EQ(search_a_dip({.foretold = 0.55, .found = 0.7, .at_zero = 0.62}).evaluations, 4);
+}
+
+TEST(Objective, EndsAtTheGainsThatMakeSense) {
+  Problem problem = problem_of(cross());
+  problem.arrival_time = 2;
+  const double scale = problem.cloth().particle_mass / 4;
+  const auto largest = [&](double damping_ratio, double engine) {
+    problem.damping_ratio = damping_ratio;
+    ScriptedBackend backend(problem, 3, [](const Moment&) { return cross(); });
+    backend.most_gain = engine;
+    EXPECT_EQ(objective(backend).gain_scale, scale);
+    EXPECT_DOUBLE_EQ(objective(backend).negligible, 1e-10 * problem.cloth().size);
+    return objective(backend).largest_gain;
+  };
+  // The engine's, and without damping at most 1½ swings: φ = √(α/scale) = 10 rad.
+  EXPECT_EQ(largest(0.5, 1e6 * scale), 1e6 * scale);
+  EXPECT_DOUBLE_EQ(largest(0.49, 1e6 * scale), 100 * scale);
+  EXPECT_EQ(largest(0, 7 * scale), 7 * scale);
+}
+
+// ---- joint search ------------------------------------------------------------------------------
+
+/// An objective of log α, with derivatives by hand or none.
+struct LogFunction {
+  std::function<double(const Vector& x)> error;
+  std::function<Vector(const Vector& x)> derivative;
+};
+
+Vector logs(const Gains& gains) {
+  const std::vector<double> groups = gains.groups();
+  return Eigen::Map<const Vector>(groups.data(), gains.count()).array().log();
+}
+
+JointObjective objective_of(const LogFunction& f, bool has_derivatives) {
+  JointObjective objective;
+  objective.errors = [f](std::span<const Gains> all) {
+    std::vector<double> errors;
+    for (const Gains& gains : all) errors.push_back(f.error(logs(gains)));
+    return errors;
+  };
+  if (!has_derivatives) return objective;
+  objective.samples = [f](std::span<const Gains> all) {
+    std::vector<ErrorSample> samples;
+    for (const Gains& gains : all) {
+      const Vector x = logs(gains);
+      ErrorSample& sample = samples.emplace_back();
+      sample.error = f.error(x);
+      const Vector derivative = f.derivative(x);
+      for (Index k = 0; k < x.size(); ++k) {
+        sample.derivatives.push_back({derivative[k] / std::exp(x[k]), {}});
+      }
+    }
+    return samples;
+  };
+  return objective;
+}
+
+/// (x − a)² + (y − b)² + (x − a)·(y − b), over 1.
+LogFunction bowl_about(double a, double b) {
+  return {[=](const Vector& x) {
+            const double u = x[0] - a, v = x[x.size() - 1] - b;
+            return 1 + u * u + v * v + u * v;
+          },
+          [=](const Vector& x) -> Vector {
+            const double u = x[0] - a, v = x[x.size() - 1] - b;
+            if (x.size() == 1) return Vector::Constant(1, 3 * (u + v));
+            return Eigen::Vector2d(2 * u + v, 2 * v + u);
+          }};
+}
+
+// On the bound u₀ of one axis, the other's best is v = −u₀/2.
+TEST(JointSearch, FindsTheBestOnABoundThatHoldsOneGain) {
+  constexpr double reach = 3;  // bounds at e^∓3
+  for (const bool has_derivatives : {true, false}) {
+    for (const double side : {-1, 1}) {
+      const LogFunction bowl = bowl_about(4 * side, 0.5 * side);
+      JointObjective objective = objective_of(bowl, has_derivatives);
+      objective.largest_gain = std::exp(reach);
+      const JointSearchOptions options = {.smallest_gain = std::exp(-reach)};
+      const JointSearchSummary found =
+          joint_search(objective, {1, bowl.error(Vector::Zero(1))}, options);
+      const Vector best = logs(found.stages.back().gains);
+      ASSERT_EQ(best.size(), 2);
+      EXPECT_NEAR(best[0], side * reach, 1e-12);
+      // The error's tolerance of 1e-6 is one of 1e-3 in log α; a difference is as wide as 0.01.
+      EXPECT_NEAR(best[1], side, 2e-3) << side << has_derivatives;
+      EXPECT_EQ(found.status, OptimizeStatus::converged);
+    }
+  }
+}
+
+// E = 1 + u⁴ + c·(v − u/2)⁴: where the curvature vanishes, what BFGS has learnt of it misleads, and
+// a descent has to begin anew.
+TEST(JointSearch, GoesDownToABottomWithoutCurvature) {
+  for (const double c : {1, 10, 100}) {
+    for (const double a : {-1.2, -0.95, -0.7, -0.45}) {
+      for (const double b : {0.3, 0.7, 1.1, 1.5}) {
+        const LogFunction flat = {[=](const Vector& x) {
+                                    const double u = x[0] - a, v = x[1] - b - u / 2;
+                                    return 1 + std::pow(u, 4) + c * std::pow(v, 4);
+                                  },
+                                  [=](const Vector& x) -> Vector {
+                                    const double u = x[0] - a, v = x[1] - b - u / 2;
+                                    const double across = 4 * c * std::pow(v, 3);
+                                    return Eigen::Vector2d(4 * std::pow(u, 3) - across / 2, across);
+                                  }};
+        JointObjective objective = objective_of(flat, true);
+        objective.largest_gain = 1e6;
+        const JointSearchSummary found = joint_search(objective, {1, flat.error(Vector::Zero(2))},
+                                                      {.smallest_gain = 1e-6, .valleys = 0});
+        EXPECT_LT(found.stages.back().error, 1 + 1e-6);  // its tolerance
+      }
+    }
+  }
+}
+
+// A gain that its bound holds says nothing of the way, however steep the error is along it.
+TEST(JointSearch, GoesDownAlongABound) {
+  constexpr double reach = 3, steep = 1e4;
+  for (const bool has_derivatives : {true, false}) {
+    for (const double side : {-1, 1}) {
+      const LogFunction cliff = {[=](const Vector& x) {
+                                   const double v = x[x.size() - 1] - 1;
+                                   return 1 + steep * (reach - side * x[0]) + v * v;
+                                 },
+                                 [=](const Vector& x) -> Vector {
+                                   return Eigen::Vector2d(-side * steep, 2 * (x[1] - 1));
+                                 }};
+      JointObjective objective = objective_of(cliff, has_derivatives);
+      objective.largest_gain = std::exp(reach);
+      const JointSearchSummary found =
+          joint_search(objective, {1, cliff.error(Vector::Zero(1))},
+                       {.smallest_gain = std::exp(-reach), .valleys = 0});
+      const Vector best = logs(found.stages.back().gains);
+      ASSERT_EQ(best.size(), 2);
+      EXPECT_NEAR(best[0], side * reach, 1e-12);
+      EXPECT_NEAR(best[1], 1, 2e-3) << side << has_derivatives;
+    }
+  }
+}
+
+TEST(JointSearch, TriesNoGainBeyondItsBounds) {
+  for (const bool has_derivatives : {true, false}) {
+    for (const double side : {-1, 1}) {
+      const LogFunction bowl = bowl_about(40 * side, -30 * side);
+      JointObjective objective = objective_of(bowl, has_derivatives);
+      objective.gain_scale = 0.5;
+      objective.largest_gain = 20;
+      const auto errors = objective.errors;
+      objective.errors = [&](std::span<const Gains> all) {
+        for (const Gains& gains : all) {
+          for (const double gain : gains.groups()) {
+            EXPECT_LE(gain, 20);
+            EXPECT_GE(gain, 0.1 * 0.5 * (1 - 1e-12));
+          }
+        }
+        return errors(all);
+      };
+      joint_search(objective, {1, bowl.error(Vector::Zero(1))}, {.smallest_gain = 0.1});
+    }
+  }
+}
+
+TEST(JointSearch, StopsWhereTheErrorIsAsGoodAsNone) {
+  JointObjective objective = objective_of(bowl_about(1, 1), true);
+  objective.negligible = 0.5;
+  const JointSearchSummary found = joint_search(objective, {3, 0.5}, {.groups = 3});
+  ASSERT_EQ(found.stages.size(), 1u);
+  EXPECT_EQ(found.stages[0].gains.rest, 3);
+  EXPECT_EQ(found.stages[0].error, 0.5);
+  EXPECT_EQ(found.evaluations, 0);
+  EXPECT_GT(joint_search(objective, {3, 0.51}).evaluations, 0);
+}
+
+// ---- the Pareto front --------------------------------------------------------------------------
+
+/// The effort of the engine of a known error at one gain.
+double effort_at(const ScriptedBackend& engine, double gain) {
+  return gain / effort_unit(engine.problem());
+}
+
+ParetoPoint point_of(const ScriptedBackend& engine, const std::function<double(double)>& error,
+                     double gain) {
+  return {gain, error(gain), effort_at(engine, gain)};
+}
+
+TEST(ParetoFront, HasLaunchOnlyAndLogSpacedGainsOfTheObjectivesRange) {
+  const auto error = [](double gain) { return 5 / (1 + gain); };
+  ScriptedBackend engine = engine_of_error(error);
+  const double scale = objective(engine).gain_scale;
+  engine.most_gain = 10 * scale;
+  const std::vector<ParetoPoint> front = pareto_front(engine, 4);
+  ASSERT_EQ(front.size(), 5u);
+  EXPECT_EQ(front[0].gain, 0);
+  for (std::size_t i = 1; i < 5; ++i) {
+    const double gain = scale * std::pow(10, static_cast<double>(i) - 3);  // 0.01 … 10
+    EXPECT_NEAR(front[i].gain / gain, 1, 1e-12);
+    EXPECT_NEAR(front[i].error, error(gain), 1e-12);
+    EXPECT_NEAR(front[i].effort / effort_at(engine, gain), 1, 1e-12);
+  }
+}
+
+TEST(ParetoFront, LeavesOutWhatTakesMoreAndComesNoNearer) {
+  const std::vector<ParetoPoint> front = pareto_optimal(
+      {{2, 1, 3}, {0, 5, 0}, {1, 2, 3}, {3, 1, 4}, {4, 0.5, 5}, {5, infinity, 1}, {6, 6, 0.5}});
+  std::vector<double> gains;
+  for (const ParetoPoint& point : front) gains.push_back(point.gain);
+  EXPECT_EQ(gains, (std::vector<double>{0, 2, 4}));
+}
+
+TEST(ParetoFront, GivesTheLeastEffortWhoseErrorIsAtTheLimit) {
+  const auto error = [](double gain) { return 4 - gain; };
+  const ScriptedBackend engine = engine_of_error(error);
+  const auto at = [&](double gain) { return point_of(engine, error, gain); };
+  const std::vector<ParetoPoint> curve = {at(0), at(1), at(2), at(3)};
+  for (const double gain : {0.25, 1.5, 2.75}) {  // between launch only and the first gain, too
+    const auto found = least_effort(engine, curve, 4 - gain);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->gain, gain, 1e-8);  // 30 halvings
+    EXPECT_LE(found->error, 4 - gain);
+  }
+  EXPECT_EQ(least_effort(engine, curve, 4)->gain, 0);
+  EXPECT_FALSE(least_effort(engine, curve, 0.999));
+}
+
+TEST(ParetoFront, GivesTheLeastErrorWhoseEffortIsAtTheLimit) {
+  const auto error = [](double gain) { return 4 - gain; };
+  const ScriptedBackend engine = engine_of_error(error);
+  const auto at = [&](double gain) { return point_of(engine, error, gain); };
+  const std::vector<ParetoPoint> curve = {at(0), at(1), at(3)};
+  for (const double gain : {0.25, 2.5}) {
+    const ParetoPoint found = least_error(engine, curve, effort_at(engine, gain));
+    EXPECT_NEAR(found.gain, gain, 1e-8);
+    EXPECT_LE(found.effort, effort_at(engine, gain));
+  }
+  EXPECT_EQ(least_error(engine, curve, effort_at(engine, 5)).gain, 3);
+}
+
+// Between two gains of the front the error may rise: at the limit it is then worse than at the
+// cheaper of the two.
+TEST(ParetoFront, GivesTheBetterOfTheLimitAndTheCheaperPoint) {
+  const auto error = [](double gain) { return gain > 1 && gain < 3 ? 9 : 4 - gain; };
+  const ScriptedBackend engine = engine_of_error(error);
+  const auto at = [&](double gain) { return point_of(engine, error, gain); };
+  const ParetoPoint found = least_error(engine, {at(0), at(1), at(3)}, effort_at(engine, 2));
+  EXPECT_EQ(found.gain, 1);
+  EXPECT_EQ(found.error, 3);
+}
+
+}  // namespace
+}  // namespace nuno
