@@ -68,6 +68,12 @@ ObjLines read_lines(const std::string& text, const std::string& source) {
   return lines;
 }
 
+[[noreturn]] void refuse(const Object& object, const std::string& source, const std::string& what) {
+  const std::string name =
+      object.name.empty() ? "" : fmt::format("object \"{}\": ", shown_text(object.name));
+  throw InputError(fmt::format("{}:{}: {}{}", source, object.line, name, what));
+}
+
 /// The object called `name`, or the only one for "".
 const Object& chosen(const ObjLines& lines, const std::string& source, const std::string& name) {
   const auto is_asked = [&](const Object& each) { return name.empty() || each.name == name; };
@@ -99,14 +105,14 @@ class EdgeChain {
   }
 
   std::vector<Index> vertices() const {
-    if (count_ == 0) refuse("all its segments have no length");
+    if (count_ == 0) refuse(object_, source_, "all its segments have no length");
     std::vector<Index> chain = {first_vertex()};
     std::size_t last_edge = object_.edges.size();  // none
     for (std::size_t k = 0; k < count_; ++k) {
       const auto next = edge_at(chain.back(), last_edge);
       const bool is_round = k > 0 && chain.back() == chain.front();
       if (next == object_.edges.size() || is_round) {
-        refuse("its segments are not one line: there is a gap");
+        refuse(object_, source_, "its segments are not one line: there is a gap");
       }
       const auto [from, to] = object_.edges[next];
       chain.push_back(from == chain.back() ? to : from);
@@ -125,7 +131,8 @@ class EdgeChain {
       std::size_t end = start;
       while (end < at_vertex_.size() && at_vertex_[end].first == at_vertex_[start].first) ++end;
       if (end - start > 2) {
-        refuse(fmt::format("{} segments meet at vertex {}: a cloth is one line", end - start,
+        refuse(object_, source_,
+               fmt::format("{} segments meet at vertex {}: a cloth is one line", end - start,
                            at_vertex_[start].first + 1));
       }
       if (end - start == 1) ends.push_back(at_vertex_[start]);
@@ -148,11 +155,6 @@ class EdgeChain {
     return object_.edges.size();
   }
 
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError(fmt::format("{}:{}: object \"{}\": {}", source_, object_.line,
-                                 shown_text(object_.name), what));
-  }
-
   const Object& object_;
   const std::string& source_;
   std::size_t count_ = 0;
@@ -169,11 +171,10 @@ Points parse_obj_curve(const std::string& text, const std::string& source,
   const Points points = all(Eigen::all, EdgeChain(object, source).vertices());
   const Eigen::Vector3d size = points.rowwise().maxCoeff() - points.rowwise().minCoeff();
   if (!(size.z() <= flat * size.norm())) {
-    throw InputError(
-        fmt::format("{}:{}: object \"{}\": its z goes over {:.4g}, it is not a curve of x and y; "
-                    "draw it in the "
-                    "front view, and export with y up",
-                    source, object.line, shown_text(object.name), size.z()));
+    refuse(object, source,
+           fmt::format("its z goes over {:.4g}, it is not a curve of x and y; draw it in the front "
+                       "view, and export with y up",
+                       size.z()));
   }
   return points.topRows(2);
 }

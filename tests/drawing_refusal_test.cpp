@@ -127,7 +127,7 @@ std::vector<BadDrawing> bad_drawings() {
       {"CsvOfThree", "bad.csv", "0,1\n1,2,3\n", ":2: ", "is not", ""},
       {"CsvOfOne", "bad.csv", "0,1\n1\n", ":2: 1 ", "is not two numbers: x,y", ""},
       {"CsvOfWords", "bad.csv", "0,1\n1,b\n", ":2: b ", "is not a number", ""},
-      {"CsvOfInfinity", "bad.csv", "0,1\n1,inf\n", ":2: inf ", "is not a number", ""},
+      {"CsvOfInfinity", "bad.csv", "0,1\n1,inf\n", ":2: inf ", "is not within ±1000000000000", ""},
       {"CsvOfNothing", "bad.csv", "x,y\n", ": ", "has no point", ""},
       {"CsvOfOnePoint", "bad.csv", "1,2\n", " to ", "at least 2 distinct points", ""},
       {"CsvWithAName", "bad.csv", "0,1\n1,2\n", ": ", "a .csv has only one", "#a"},
@@ -273,7 +273,9 @@ TEST_F(ThrowOfDrawings, AreRefusedWhatBelongsToMeshes) {
             std::string::npos);
   EXPECT_NE(refusal({mesh, mesh, "--backend", "box2d"}).find("box2d does not fly a sheet"),
             std::string::npos);
-  EXPECT_EQ(refusal({mesh}), "TARGET: is missing; only a drawing may hold both shapes\n");
+  EXPECT_EQ(refusal({mesh}),
+            "TARGET: is missing; a START of glTF can hold it as a morph target, a drawing as a "
+            "line\n");
   EXPECT_NE(refusal({line, mesh}).find(mesh), std::string::npos);
 }
 

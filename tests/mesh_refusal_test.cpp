@@ -68,7 +68,6 @@ std::vector<BadMesh> no_meshes() {
       in_both("Empty", "", "", "", "has no face"),
       in_both("OnlyBlanks", " \n\r\n\t\n", "", "", "has no face"),
       in_both("OnlyVertices", vertices, "", "", "has no face"),
-      in_both("OnlyLines", vertices + "l 1 2 3\nl 4 5 6\n", "", "", "has no face"),
       in_both("OnlyPoints", vertices + "p 1 2 3\n", "", "", "has no face"),
       in_both("Binary", std::string("\x7f\0ELF\x01\xff\xfe\x1b[2J\n\0\0", 14), ":1", "ELF",
               "is not a statement"),
@@ -263,7 +262,8 @@ std::vector<BadScene> bad_scenes() {
       {"RestIsANumber", with("/rest", 0), "/rest", "0", "is not \"initial\" or \"flat\""},
       {"MeshIsANumber", with("/initial", 5), "/initial", "5", "is not an array of points"},
       {"MeshIsNull", with("/target", nullptr), "/target", "null", "is not a string"},
-      {"MeshAndPolyline", with("/target", polyline), "/target", "[[0,1],[1,1]]", "is not a string"},
+      {"MeshAndPolyline", with("/target", polyline), "/target", "[[0.0,1.0],[1.0,1.0]]",
+       "is not a string"},
       {"PolylineAndMesh", with("/initial", polyline), "/target", "\"target.obj\"",
        "is not an array of points"},
       {"MaterialOfAChain", replaced(with("/material", "silk"), "\"start.obj\"", "[[0,1],[1,1]]"),
@@ -346,7 +346,7 @@ TEST_F(SheetRefusal, OfWhatIsNoMeshFileNamesIt) {
   };
   const std::string folder = in_folder("folder.obj");
   expect_refused(with_start(folder), "a.glb", folder + ": ", "", "is a directory, not a mesh");
-  for (const char* name : {"start.ply", "start.json", "start"}) {
+  for (const char* name : {"start.stl", "start.json", "start"}) {
     const std::string file = in_folder(name);
     write_text(file, square);
     expect_refused(with_start(file), "a.glb", file + ": ", "", "does not end in .obj");
@@ -449,9 +449,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadThrow{"UnknownMaterial",
                  {"--time", "1", "--material", "velvet"},
                  "--material: \"velvet\" is not one of cotton, silk, denim, wool"},
-        BadThrow{"BackendOfChains",
-                 {"--time", "1", "--backend", "box2d"},
-                 "--backend: \"box2d\" is not one of native, bullet"},
+        BadThrow{"BackendOfNobody",
+                 {"--time", "1", "--backend", "ode"},
+                 "--backend: \"ode\" is not one of native, box2d, bullet"},
         BadThrow{"NoFrames",
                  {"--time", "1", "--frames-per-second", "0"},
                  "--frames-per-second: 0 is not > 0"},
@@ -472,7 +472,10 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_F(SheetRefusal, OfAThrowWithoutMeshesNamesWhatIsMissing) {
   EXPECT_EQ(nuno({"throw"}).err, "START: is missing; it is required\n");
-  EXPECT_EQ(nuno({"throw", "a.obj", "--time", "1"}).err, "TARGET: is missing; it is required\n");
+  write_meshes(square, square);
+  EXPECT_EQ(nuno({"throw", in_folder("start.obj"), "--time", "1"}).err,
+            "TARGET: is missing; a START of glTF can hold it as a morph target, a drawing as a "
+            "line\n");
   EXPECT_EQ(nuno({"throw", "", "b.obj", "--time", "1"}).err, "START: \"\" is not a name\n");
 }
 
