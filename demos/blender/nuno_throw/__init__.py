@@ -19,7 +19,7 @@ import bpy
 
 from . import shapes
 
-MATERIALS = [("", "Default", "A light cotton-like cloth")] + [
+MATERIALS = [("default", "Default", "A light cotton-like cloth")] + [
     (name, name.capitalize(), f"{name.capitalize()}, as measured") for name in ("cotton", "silk", "denim", "wool")
 ]
 
@@ -111,7 +111,7 @@ def options(scene, cloth):
     settings = scene.nuno_throw
     seconds = (settings.arrival_frame - settings.first_frame) / rate(scene)
     words = ["--time", repr(seconds), "--frames-per-second", repr(rate(scene))]
-    if settings.material and cloth.has_material:
+    if settings.material != "default" and cloth.has_material:
         words += ["--material", settings.material]
     if settings.error > 0:
         words += ["--error-limit", repr(settings.error / 100)]
