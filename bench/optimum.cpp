@@ -78,23 +78,29 @@ void add_optimum(Report& report, const std::string& name, Index steps, double of
   report.add(name, "E there, converged", "length", exactly(limit));
 }
 
-void against_paper(Report& report, Index particles, const Effort& effort) {
-  const Problem problem = make_problem(straight_to_s(particles));
-  const double length = problem.cloth().size;
-  const Convergence convergence(*native::make_backend(problem));
+/// Refuses to go on unless the plain chain and the native one tend to one limit for small steps.
+void check_limit(Report& report, Index particles, double length, const Convergence& convergence,
+                 const PlainChain& exact, const PlainChain& finer) {
   report.check(
       convergence.uncertainty() < 0.1 * tolerance * length,
       fmt::format("N = {}: the limit of E for small steps is known to {:.0e} of the length",
                   particles, convergence.uncertainty() / length));
-  const std::unique_ptr<Backend> native = native_within_tolerance(problem, convergence);
-  const PlainChain exact = plain_within_tolerance(problem, PlainLaunch::exact, convergence);
-  const PlainChain paper = plain_within_tolerance(problem, PlainLaunch::paper, convergence);
-  const PlainChain finer(problem, 8 * exact.steps(), PlainLaunch::exact);
   report.check(convergence.off(finer) < 0.5 * tolerance * length,
                fmt::format("N = {}: the plain chain converges to the native one: {:.0e} of the "
                            "length at {} steps, {:.0e} at {}",
                            particles, convergence.off(exact) / length, exact.steps(),
                            convergence.off(finer) / length, finer.steps()));
+}
+
+void against_paper(Report& report, Index particles, const Effort& effort) {
+  const Problem problem = make_problem(straight_to_s(particles));
+  const double length = problem.cloth().size;
+  const Convergence convergence(*native::make_backend(problem));
+  const std::unique_ptr<Backend> native = native_within_tolerance(problem, convergence);
+  const PlainChain exact = plain_within_tolerance(problem, PlainLaunch::exact, convergence);
+  const PlainChain paper = plain_within_tolerance(problem, PlainLaunch::paper, convergence);
+  const PlainChain finer(problem, 8 * exact.steps(), PlainLaunch::exact);
+  check_limit(report, particles, length, convergence, exact, finer);
 
   const Objective ours = objective(*native);
   const Objective with_paper = paper.objective();

@@ -23,6 +23,91 @@ Vec2 column(const Points& points, std::size_t i) {
   return {points(0, static_cast<Index>(i)), points(1, static_cast<Index>(i))};
 }
 
+/// The chain's particles on their way.
+class Flight {
+ public:
+  Flight(const Problem& problem, const Points& launch_velocity, const Points& target_shape)
+      : chain_(problem.chain()), n_(static_cast<std::size_t>(chain_.particles())) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      x_[i] = column(chain_.initial, i);
+      v_[i] = column(launch_velocity, i);
+      target_[i] = column(target_shape, i);
+    }
+  }
+
+  /// Gravity, air drag and shape control.
+  void pull(double gain) {
+    Vec2 centroid;
+    for (std::size_t i = 0; i < n_; ++i) centroid = centroid + x_[i];
+    centroid = (1 / static_cast<double>(n_)) * centroid;
+    const double drag = chain_.drag_rate * chain_.particle_mass;
+    for (std::size_t i = 0; i < n_; ++i) {
+      f_[i] = gain * (target_[i] - (x_[i] - centroid)) - drag * v_[i];
+      f_[i].y -= chain_.particle_mass * chain_.gravity;
+    }
+  }
+
+  /// Stretch springs and dashpots.
+  void stretch() {
+    for (std::size_t i = 0; i + 1 < n_; ++i) {
+      const Vec2 span = x_[i + 1] - x_[i];
+      const Vec2 rate = v_[i + 1] - v_[i];
+      length_[i] = std::sqrt(dot(span, span));
+      direction_[i] = (1 / length_[i]) * span;
+      const double tension = (cloth_.stretch_stiffness * (length_[i] - rest_length_[i]) +
+                              cloth_.stretch_damping * dot(direction_[i], rate)) /
+                             rest_length_[i];
+      f_[i] = f_[i] + tension * direction_[i];
+      f_[i + 1] = f_[i + 1] - tension * direction_[i];
+      if (cloth_.hinge_damping > 0) turning_[i] = cross(direction_[i], rate) / length_[i];
+    }
+  }
+
+  /// Hinges; after `stretch`, which measures the segments.
+  void bend() {
+    for (std::size_t i = 0; i + 2 < n_; ++i) {
+      const Vec2 a = direction_[i];
+      const Vec2 b = direction_[i + 1];
+      double moment = cloth_.hinge_stiffness * std::atan2(cross(a, b), dot(a, b));
+      if (cloth_.hinge_damping > 0) {
+        moment += cloth_.hinge_damping * (turning_[i + 1] - turning_[i]);
+      }
+      moment /= hinge_length_[i];
+      const Vec2 left = (moment / length_[i]) * normal(a);
+      const Vec2 right = (moment / length_[i + 1]) * normal(b);
+      f_[i] = f_[i] - left;
+      f_[i + 1] = f_[i + 1] + left + right;
+      f_[i + 2] = f_[i + 2] - right;
+    }
+  }
+
+  void move(double h) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      v_[i] = v_[i] + (h / chain_.particle_mass) * f_[i];
+      x_[i] = x_[i] + h * v_[i];
+    }
+  }
+
+  double error(const Points& target) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const Vec2 residual = x_[i] - column(target, i);
+      sum += std::sqrt(dot(residual, residual));
+    }
+    return std::isfinite(sum) ? sum / static_cast<double>(n_)
+                              : std::numeric_limits<double>::infinity();
+  }
+
+ private:
+  const Chain& chain_;
+  const ChainMaterial& cloth_ = chain_.material;
+  const double* rest_length_ = chain_.rest_length.data();
+  const double* hinge_length_ = chain_.hinge_length.data();
+  std::size_t n_;
+  std::vector<Vec2> x_ = std::vector<Vec2>(n_), v_ = x_, f_ = x_, target_ = x_, direction_ = x_;
+  std::vector<double> length_ = std::vector<double>(n_), turning_ = length_;
+};
+
 }  // namespace
 
 PlainChain::PlainChain(const Problem& problem, Index steps, PlainLaunch launch)
@@ -41,72 +126,15 @@ PlainChain::PlainChain(const Problem& problem, Index steps, PlainLaunch launch)
 }
 
 double PlainChain::error(double gain) const {
-  const Chain& chain = problem_.chain();
-  const ChainMaterial& cloth = chain.material;
+  Flight flight(problem_, launch_velocity_, target_shape_);
   const double h = problem_.arrival_time / static_cast<double>(steps_);
-  const double mass = chain.particle_mass;
-  const auto n = static_cast<std::size_t>(chain.particles());
-  const double* rest_length = chain.rest_length.data();
-  const double* hinge_length = chain.hinge_length.data();
-
-  std::vector<Vec2> x(n), v(n), f(n), target(n);
-  std::vector<Vec2> direction(n - 1);
-  std::vector<double> length(n - 1), turning(n - 1);
-  for (std::size_t i = 0; i < n; ++i) {
-    x[i] = column(chain.initial, i);
-    v[i] = column(launch_velocity_, i);
-    target[i] = column(target_shape_, i);
-  }
-
   for (Index step = 0; step < steps_; ++step) {
-    // Gravity, air drag and shape control.
-    Vec2 centroid;
-    for (std::size_t i = 0; i < n; ++i) centroid = centroid + x[i];
-    centroid = (1 / static_cast<double>(n)) * centroid;
-    for (std::size_t i = 0; i < n; ++i) {
-      f[i] =
-          gain * (target[i] - (x[i] - centroid)) - (chain.drag_rate * chain.particle_mass) * v[i];
-      f[i].y -= mass * chain.gravity;
-    }
-    // Stretch springs and dashpots.
-    for (std::size_t i = 0; i + 1 < n; ++i) {
-      const Vec2 span = x[i + 1] - x[i];
-      const Vec2 rate = v[i + 1] - v[i];
-      length[i] = std::sqrt(dot(span, span));
-      direction[i] = (1 / length[i]) * span;
-      const double tension = (cloth.stretch_stiffness * (length[i] - rest_length[i]) +
-                              cloth.stretch_damping * dot(direction[i], rate)) /
-                             rest_length[i];
-      f[i] = f[i] + tension * direction[i];
-      f[i + 1] = f[i + 1] - tension * direction[i];
-      if (cloth.hinge_damping > 0) turning[i] = cross(direction[i], rate) / length[i];
-    }
-    // Hinges.
-    for (std::size_t i = 0; i + 2 < n; ++i) {
-      const Vec2 a = direction[i];
-      const Vec2 b = direction[i + 1];
-      double moment = cloth.hinge_stiffness * std::atan2(cross(a, b), dot(a, b));
-      if (cloth.hinge_damping > 0) moment += cloth.hinge_damping * (turning[i + 1] - turning[i]);
-      moment /= hinge_length[i];
-      const Vec2 left = (moment / length[i]) * normal(a);
-      const Vec2 right = (moment / length[i + 1]) * normal(b);
-      f[i] = f[i] - left;
-      f[i + 1] = f[i + 1] + left + right;
-      f[i + 2] = f[i + 2] - right;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      v[i] = v[i] + (h / mass) * f[i];
-      x[i] = x[i] + h * v[i];
-    }
+    flight.pull(gain);
+    flight.stretch();
+    flight.bend();
+    flight.move(h);
   }
-
-  double sum = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec2 residual = x[i] - column(problem_.target, i);
-    sum += std::sqrt(dot(residual, residual));
-  }
-  return std::isfinite(sum) ? sum / static_cast<double>(n)
-                            : std::numeric_limits<double>::infinity();
+  return flight.error(problem_.target);
 }
 
 Index PlainChain::fewest_steps(const Problem& problem) {

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "instruction_sets.h"
 #include "peers.h"
@@ -80,6 +83,74 @@ void check_flight(Report& report, const Problem& problem, const std::string& nam
   report.add(name, "length off by", "1", exactly(found.stretch));
 }
 
+/// What is measured: a call flies so many chains.
+struct Contestants {
+  std::vector<std::string> names;
+  std::vector<double> chains;
+  std::vector<Run> runs;
+
+  void add(const std::string& name, double chains_per_call, Run run) {
+    names.push_back(name);
+    chains.push_back(chains_per_call);
+    runs.push_back(std::move(run));
+  }
+};
+
+constexpr std::size_t batch = 1;  // the contestant after the scalar chain, which is the first
+
+void add_native(Contestants& contestants, const std::string& scalar_name, const Backend& native,
+                const std::vector<double>& gains, const std::vector<InstructionSet>& sets) {
+  const auto use_best = [&set = sets.front()] { use(set); };
+  contestants.add(scalar_name, 1,
+                  {[&] {
+                     return native.errors({&gains[1], 1}).front();
+                   },
+                   use_best});
+  for (const InstructionSet& set : sets) {
+    contestants.add(fmt::format("native, batch ({})", set.name), static_cast<double>(gains.size()),
+                    {[&] { return sum(native.errors(gains)); }, [&set] { use(set); }});
+  }
+}
+
+/// Our chain on Box2D with either of its hinges; gives the first of the two.
+std::size_t add_box2d(Contestants& contestants, Report& report, const Problem& problem,
+                      const Points& exact, double gain) {
+  const double h = problem.arrival_time / static_cast<double>(steps);
+  const std::size_t first = contestants.runs.size();
+  for (const box2d::Hinge hinge : {box2d::Hinge::soft_weld, box2d::Hinge::spring_pair}) {
+    const std::shared_ptr<const Backend> backend =
+        box2d::make_backend_with({.hinge = hinge}, with_time_step(problem, h));
+    const std::string name = fmt::format(
+        "Box2D chain, {}",
+        hinge == box2d::Hinge::soft_weld ? "soft welds" : "revolute joints and spring pairs");
+    report.check(backend->steps() == steps, "the Box2D chain takes the same steps");
+    check_flight(report, problem, name, rollout(*backend, 0).final, exact, 0.05);
+    contestants.add(name, 1, {[backend, gain] { return backend->errors({&gain, 1}).front(); }});
+  }
+  return first;
+}
+
+/// Chains as other engines' users write them; gives the first.
+std::size_t add_peers(Contestants& contestants, Report& report, const Problem& problem,
+                      const Points& exact, const std::vector<Peer>& peers) {
+  const std::size_t first = contestants.runs.size();
+  for (const Peer& peer : peers) {
+    check_flight(report, problem, peer.name, peer.fly(), exact, peer.shape_tolerance);
+    contestants.add(peer.name, 1, {[&peer] { return peer.fly().sum(); }});
+  }
+  return first;
+}
+
+/// Seconds per call to nanoseconds per particle and step.
+std::vector<std::vector<double>> per_particle_step(std::vector<std::vector<double>> times,
+                                                   const Contestants& contestants) {
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const double work = static_cast<double>(steps * particles) * contestants.chains[i];
+    for (double& value : times[i]) value *= 1e9 / work;
+  }
+  return times;
+}
+
 }  // namespace
 
 void throughput(Report& report, const Options& options) {
@@ -104,50 +175,19 @@ void throughput(Report& report, const Options& options) {
   const std::string scalar_name = fmt::format("native, scalar ({})", sets.front().name);
   check_flight(report, problem, scalar_name, ours, exact, 1e-3);
 
-  std::vector<std::string> names = {scalar_name};
-  std::vector<double> chains = {1};
-  std::vector<Run> runs = {{[&] { return native->errors({&gains[1], 1}).front(); }}};
-  for (const InstructionSet& set : sets) {
-    names.push_back(fmt::format("native, batch ({})", set.name));
-    chains.push_back(static_cast<double>(gains.size()));
-    runs.push_back({[&] { return sum(native->errors(gains)); }, [&set] { use(set); }});
-  }
-  const std::size_t batch = 1;
-  runs[0].prepare = runs[batch].prepare;
-
-  std::vector<std::unique_ptr<Backend>> box2d;
-  const std::size_t first_box2d = runs.size();
-  for (const box2d::Hinge hinge : {box2d::Hinge::soft_weld, box2d::Hinge::spring_pair}) {
-    box2d.push_back(box2d::make_backend_with({.hinge = hinge}, with_time_step(problem, h)));
-    const Backend& backend = *box2d.back();
-    names.push_back(fmt::format("Box2D chain, {}", hinge == box2d::Hinge::soft_weld
-                                                       ? "soft welds"
-                                                       : "revolute joints and spring pairs"));
-    report.check(backend.steps() == steps, "the Box2D chain takes the same steps");
-    check_flight(report, problem, names.back(), rollout(backend, 0).final, exact, 0.05);
-    chains.push_back(1);
-    runs.push_back({[&] { return backend.errors({&gains[1], 1}).front(); }});
-  }
-  const std::size_t first_peer = runs.size();
+  Contestants contestants;
+  add_native(contestants, scalar_name, *native, gains, sets);
+  const std::size_t first_box2d = add_box2d(contestants, report, problem, exact, gains[1]);
   const std::vector<Peer> others = peers(problem, steps);
-  for (const Peer& peer : others) {
-    names.push_back(peer.name);
-    check_flight(report, problem, peer.name, peer.fly(), exact, peer.shape_tolerance);
-    chains.push_back(1);
-    runs.push_back({[&] { return peer.fly().sum(); }});
-  }
+  const std::size_t first_peer = add_peers(contestants, report, problem, exact, others);
 
   const Effort effort{options.quick ? 9 : 25, 0.008};
-  const auto times = interleave(runs, effort, Clock::cpu);
+  const auto times = interleave(contestants.runs, effort, Clock::cpu);
   use(sets.front());
-  const auto per_chain = [&](std::size_t run) {
-    return static_cast<double>(steps * particles) * chains[run];
-  };
-  std::vector<std::vector<double>> per_step = times;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    for (double& value : per_step[i]) value *= 1e9 / per_chain(i);
-    report.add(names[i], "per particle-step", "ns", statistics(per_step[i]));
-    report.add(names[i], "batch faster by", "×", ratio(per_step[i], per_step[batch]));
+  const auto per_step = per_particle_step(times, contestants);
+  for (std::size_t i = 0; i < per_step.size(); ++i) {
+    report.add(contestants.names[i], "per particle-step", "ns", statistics(per_step[i]));
+    report.add(contestants.names[i], "batch faster by", "×", ratio(per_step[i], per_step[batch]));
   }
   report.end();
 

@@ -36,7 +36,8 @@ class ChainBackend final : public Backend {
 
   std::unique_ptr<Simulation> do_start(const Points& positions,
                                        const Points& velocities) const override {
-    return make_simulation(chain_, scheme_, positions, velocities);
+    return make_simulation(chain_, scheme_, MassCenterFlight(*this, positions, velocities),
+                           positions, velocities);
   }
 
   // A hundred times the rounding that a flight collects in single precision.
@@ -77,7 +78,7 @@ void require_within_range(const Chain& chain, Hinge form) {
 std::unique_ptr<Backend> make_backend_with(const Options& options, const Problem& problem) {
   assert(options.velocity_iterations > 0 && options.position_iterations > 0);
   require_within_range(problem.chain(), options.hinge);
-  return std::make_unique<ChainBackend>(problem, options, count_steps(problem));
+  return std::make_unique<ChainBackend>(problem, options, count_steps(problem, options.hinge));
 }
 
 std::unique_ptr<Backend> make_backend(const Problem& problem) {

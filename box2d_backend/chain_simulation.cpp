@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 namespace nuno::box2d {
 
@@ -23,20 +24,30 @@ namespace nuno::box2d {
 //     x' = x + h·u'
 // s = e^(−κh/2) and q = sinh(κh/2)/κ make drag and a constant force exact. s is not left to Box2D's
 // damping: 1 − s has only three digits in single precision, for a drag of 1e-4 per step.
+// The hinges' springs are in P. Box2D evaluates a soft joint where the step ends, k·(C + Ċ); a
+// moment k·s·u outside makes that k·(C + v − u), the mean of the angles before and after the step:
+//     h²ω²  →  h²ω²/(1 + h²ω²/2) < 2
+// below RATTLE's limit of 4 at every stiffness and with room for λ̄, which lags. It is of second
+// order and damps nothing; the mean of three, (θ₋ + 2θ + θ₊)/4, comes up to that limit and bursts.
+//
 // λ̄ ← λ̄ + w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the
 // joints forbid; each step multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
 //
 // Box2D's position solver closes what stays open of the joints, and its corrections are taken over.
 //
-// Poses and velocities are kept in double precision, poses about the centroid: the flight is long
-// and the cloth small. Nothing here knows where the centroid should be: it flies by the velocities
-// that Box2D solves, and misses by their rounding.
+// The rods fly about their mass centre, see mass_center_flight.h: without gravity, and under what
+// is left of the forces when their mean is taken off. Poses and velocities are kept in double
+// precision, and what rounding adds to their mass centre's is taken off.
 Scheme make_scheme(const RodChain& chain, const Options& options) {
   const double z = chain.drag_rate;
   Scheme scheme;
   scheme.keep = std::exp(-z / 2);
   scheme.half_kick = z > 0 ? std::sinh(z / 2) / z : 0.5;
-  scheme.velocity_iterations = options.velocity_iterations;
+  // Each iteration takes away what is the faster gone the softer the springs: with 2/3 of h²ω² + hc
+  // more, gaps and strains are those of converged impulses to a tenth, from 15 to 600 of it; with
+  // a third, a stiff cloth (150) bursts.
+  const double more = 2.0 / 3 * chain.hinge_rigidity;
+  scheme.velocity_iterations = options.velocity_iterations + static_cast<int>(more);
   scheme.position_iterations = options.position_iterations;
   return scheme;
 }
@@ -66,11 +77,11 @@ Vector2d cross(double w, const Vector2d& r) { return {-w * r.y(), w * r.x()}; }
 
 class ChainSimulation final : public Simulation {
  public:
-  ChainSimulation(const RodChain& chain, const Scheme& scheme, const Points& positions,
-                  const Points& velocities)
+  ChainSimulation(const RodChain& chain, const Scheme& scheme, MassCenterFlight center,
+                  const Points& positions, const Points& velocities)
       : chain_(chain),
         scheme_(scheme),
-        center_(centroid(positions)),
+        center_(std::move(center)),
         pose_(3, rods()),
         velocity_(3, rods()),
         mean_impulse_(2, rods() - 1),
@@ -78,8 +89,9 @@ class ChainSimulation final : public Simulation {
         right_(2, rods()),
         positions_(positions),
         velocities_(velocities) {
-    const Points x = (positions.colwise() - center_) / chain_.unit_length;
-    const Points u = without_stretching(positions, velocities) * (chain_.h / chain_.unit_length);
+    const Points x = shape_of(positions) / chain_.unit_length;
+    const Points u =
+        shape_of(without_stretching(positions, velocities)) * (chain_.h / chain_.unit_length);
     Vector2d before(1, 0);
     for (Index i = 0; i < rods(); ++i) {
       const Vector2d along = (x.col(i + 1) - x.col(i)) / rod(i).length;
@@ -99,11 +111,13 @@ class ChainSimulation final : public Simulation {
 
   void step(const Points& forces) override {
     if (!failure_.empty()) return;
-    if (!push(forces)) return give_up(wild_force);
+    const Vector2d mean_force = centroid(forces);
+    if (!push(forces.colwise() - mean_force)) return give_up(wild_force);
     const RodWorld::Step solved = world_->step(
         pose_, scheme_.keep * velocity_, scheme_.velocity_iterations, scheme_.position_iterations);
     if (!take_over(solved)) return give_up(wild_motion);
     if (!turn_within_range()) return give_up(wild_turn);
+    center_.step(mean_force);
     read();
   }
 
@@ -126,7 +140,25 @@ class ChainSimulation final : public Simulation {
       const double torque = cross(left_.col(i), left) + cross(right_.col(i), right);
       world_->push(i, left + right, torque);
     }
+    for (Index i = 0; i + 1 < rods(); ++i) {
+      const double torque = look_back(i);
+      world_->push(i, {0, 0}, -torque);
+      world_->push(i + 1, {0, 0}, torque);
+    }
     return true;
+  }
+
+  /// k·s·u of a hinge, the moment that takes its spring back from where the step ends.
+  double look_back(Index i) const {
+    const HingeSpring& hinge = chain_.hinges[index(i)];
+    double squared_arm = 1;  // Σ (dC/dθ)², see rod_chain.cpp
+    if (chain_.hinge == Hinge::spring_pair) {
+      const double phi = (pose_(2, i + 1) - pose_(2, i)) / 2;
+      const double along = hinge.along * std::sin(phi), aside = hinge.aside * std::cos(phi);
+      squared_arm = 2 * (along * along + aside * aside);
+    }
+    const double turning = scheme_.keep * (velocity_(2, i + 1) - velocity_(2, i));
+    return scheme_.half_kick * hinge.stiffness * squared_arm * turning;
   }
 
   bool take_over(const RodWorld::Step& solved) {
@@ -185,6 +217,13 @@ class ChainSimulation final : public Simulation {
     return sum / static_cast<double>(rods() + 1);
   }
 
+  /// Takes off what rounding has added to the motion of the mass centre.
+  void recenter() {
+    const Vector2d moved = mass_center(pose_), drift = mass_center(velocity_);
+    pose_.topRows<2>().colwise() -= moved;
+    velocity_.topRows<2>().colwise() -= drift;
+  }
+
   void locate_ends() {
     for (Index i = 0; i < rods(); ++i) {
       const Vector2d along(std::cos(pose_(2, i)), std::sin(pose_(2, i)));
@@ -197,6 +236,7 @@ class ChainSimulation final : public Simulation {
   // chord of 2·tan(ω/2)·(r + r')/2 turned by a right angle; differences of positions would say the
   // same with the roundings of two poses, over h.
   void read() {
+    recenter();
     const Matrix2Xd left_before = left_;
     const Matrix2Xd right_before = right_;
     locate_ends();
@@ -213,12 +253,9 @@ class ChainSimulation final : public Simulation {
       velocities_.col(i) += left * (u + cross(turn, left_.col(i) + left_before.col(i)));
       velocities_.col(i + 1) += right * (u + cross(turn, right_.col(i) + right_before.col(i)));
     }
-    positions_ = (chain_.unit_length * positions_).colwise() + center_;
-    velocities_ *= chain_.unit_length / chain_.h;
-
-    const Vector2d moved = mass_center(pose_);
-    center_ += chain_.unit_length * moved;
-    pose_.topRows<2>().colwise() -= moved;
+    const double unit_velocity = chain_.unit_length / chain_.h;
+    positions_ = (chain_.unit_length * positions_).colwise() + center_.position();
+    velocities_ = (unit_velocity * shape_of(velocities_)).colwise() + center_.velocity();
   }
 
   /// Box2D sees nothing of this cloth from now on: a bad number would end the process there.
@@ -231,11 +268,11 @@ class ChainSimulation final : public Simulation {
   const RodChain& chain_;
   const Scheme& scheme_;
   std::optional<RodWorld> world_;  // none for a launch that Box2D could not take
-  Vector2d center_;                // [m], where poses have their origin
-  Motions pose_;                   // x
-  Motions velocity_;               // u
-  Matrix2Xd mean_impulse_;         // λ̄ of every hinge
-  Matrix2Xd left_, right_;         // the rods' ends from their centres
+  MassCenterFlight center_;
+  Motions pose_;            // x
+  Motions velocity_;        // u
+  Matrix2Xd mean_impulse_;  // λ̄ of every hinge
+  Matrix2Xd left_, right_;  // the rods' ends from their centres
   Points positions_, velocities_;
   std::string_view failure_;  // empty: Box2D flies this cloth
   bool first_ = true;
@@ -244,8 +281,9 @@ class ChainSimulation final : public Simulation {
 }  // namespace
 
 std::unique_ptr<Simulation> make_simulation(const RodChain& chain, const Scheme& scheme,
-                                            const Points& positions, const Points& velocities) {
-  return std::make_unique<ChainSimulation>(chain, scheme, positions, velocities);
+                                            const MassCenterFlight& center, const Points& positions,
+                                            const Points& velocities) {
+  return std::make_unique<ChainSimulation>(chain, scheme, center, positions, velocities);
 }
 
 }  // namespace nuno::box2d

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <nuno/mass_center_flight.h>
+
 #include "rod_chain.h"
 
 #include <memory>
@@ -16,8 +18,10 @@ struct Scheme {
 
 Scheme make_scheme(const RodChain& chain, const Options& options);
 
-/// A flight of a chain, which with its scheme has to outlive it.
+/// A flight of a chain, which with its scheme has to outlive it, about this flight of its mass
+/// centre.
 std::unique_ptr<Simulation> make_simulation(const RodChain& chain, const Scheme& scheme,
-                                            const Points& positions, const Points& velocities);
+                                            const MassCenterFlight& center, const Points& positions,
+                                            const Points& velocities);
 
 }  // namespace nuno::box2d

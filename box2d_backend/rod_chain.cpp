@@ -46,6 +46,14 @@ HingeSpring make_hinge_spring(const ChainMaterial& cloth, double length, const R
 
 }  // namespace
 
+// A moment k·θ on the particles of a straight chain has the highest frequency ω² = 16·k/(m·ℓ²).
+HingeRates hinge_rates(const Chain& chain) {
+  const double shortest = chain.rest_length.minCoeff();
+  const double per_hinge =
+      16 / (chain.hinge_length.minCoeff() * shortest * shortest * chain.particle_mass);
+  return {per_hinge * chain.material.hinge_stiffness, per_hinge * chain.material.hinge_damping};
+}
+
 RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps) {
   const Chain& chain = problem.chain();
   const Index rods = chain.particles() - 1;
@@ -61,8 +69,8 @@ RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps) {
   for (const double length : chain.hinge_length) {
     result.hinges.push_back(make_hinge_spring(chain.material, length, result));
   }
+  result.hinge_rigidity = hinge_rates(chain).rigidity(result.h);
   result.drag_rate = chain.drag_rate * result.h;
-  result.gravity = chain.gravity * result.h * result.h / result.unit_length;
   return result;
 }
 

@@ -30,6 +30,15 @@ struct HingeSpring {
 
 constexpr double pair_range = 1.7;  // rad; the inner spring is 0.009 rods long there
 
+/// The fastest that the hinges of a chain move it.
+struct HingeRates {
+  double squared_frequency = 0;  ///< ω² [1/s²]
+  double damping = 0;            ///< c [1/s]
+
+  double rigidity(double h) const { return h * (h * squared_frequency + damping); }
+};
+HingeRates hinge_rates(const Chain& chain);
+
 /// The cloth as rods with springs at their hinges, the same for every flight.
 struct RodChain {
   double h = 0;            ///< the unit of time [s]
@@ -38,8 +47,8 @@ struct RodChain {
   Hinge hinge = Hinge::soft_weld;
   std::vector<Rod> rods;
   std::vector<HingeSpring> hinges;
-  double drag_rate = 0;  ///< κ
-  double gravity = 0;
+  double hinge_rigidity = 0;  ///< h²ω² + hc, see hinge_rates
+  double drag_rate = 0;       ///< κ
 };
 
 RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps);

@@ -20,7 +20,7 @@ std::size_t index(Index i) { return static_cast<std::size_t>(i); }
 // Box2D solves joints from the last body of the chain to the first, and at a hinge the joint that
 // was made last comes first: springs, then the revolute joint.
 RodWorld::RodWorld(const RodChain& chain, double half_kick)
-    : world_(std::make_unique<b2World>(b2Vec2(0, narrow(-half_kick * chain.gravity)))) {
+    : world_(std::make_unique<b2World>(b2Vec2(0, 0))) {
   world_->SetAllowSleeping(false);
   world_->SetContinuousPhysics(false);
   for (const Rod& rod : chain.rods) {
@@ -40,17 +40,15 @@ RodWorld::RodWorld(const RodChain& chain, double half_kick)
 
 RodWorld::~RodWorld() = default;
 
-// A soft joint's impulse over Box2D's step of 1 is −k·(C + Ċ) − c·Ċ: the spring is evaluated where
-// the step ends, and its k·Ċ is a damping that nobody asked for. c = c₀ − (1 − ε)·k takes it out;
-// ε, since c = −k means a rigid joint to Box2D. Half a kick, so half the spring: q·k.
+// A soft joint's impulse over Box2D's step of 1 is −k·(C + Ċ) − c·Ċ, what chain_simulation.cpp
+// takes a part of back. Half a kick, so half the spring: q·k.
 b2Joint* RodWorld::join(const RodChain& chain, double half_kick, std::size_t i) {
-  constexpr double epsilon = 1.0 / 1024;
   constexpr double nothing = 1e-20;  // no moment to speak of, and its reciprocal is finite
   const HingeSpring& hinge = chain.hinges[i];
   const bool has_spring = std::max(hinge.stiffness, hinge.damping) > nothing;
   // A joint of no stiffness would be rigid: a lone dashpot gets a spring for form's sake.
   const double k = half_kick * std::max(hinge.stiffness, nothing);
-  const double c = half_kick * hinge.damping - (1 - epsilon) * k;
+  const double c = half_kick * hinge.damping;
   const double end = chain.rods[i].right;
   const double start = chain.rods[i + 1].left;
 

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "rod_chain.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -22,10 +24,12 @@ namespace {
 //     t₀/2000   3.5e-5, 4.9e-4, 31 ms    3.5e-5, 3.1e-4, 41 ms    3.6e-5, 3.9e-4,  63 ms
 //     t₀/4000   1.8e-5, 4.9e-4, 61 ms    2.6e-5, 2.4e-4, 74 ms    4.2e-5, 3.1e-4, 108 ms
 // 60 scenes that had no say in any choice here give 6.0e-5, 4.9e-4 at t₀/2000 and 16 iterations.
-// More steps cost centroid: its rounding grows with their number, 5e-5 of the cloth's length at
-// t₀/2000, 2e-4 at t₀/4000, 4e-4 at t₀/8000 (s-curve without control, where it is largest).
 // The seeded family asks for 1e-3 and 5e-3: t₀/1000 and 8 iterations leave a margin of five, at a
 // third of the time of t₀/2000 and 16 (docs/two-engines.md).
+// All that is of explicit hinges, at h²ω² ≤ ½. Implicit ones take t₀/1000 where those took up to
+// t₀/6000; median, 95th percentile and worst of 45 scenes of the family go from 1.4e-4, 1.0e-3,
+// 1.9e-3 to 2.2e-4, 1.8e-3, 2.7e-3: the waves of stiff cloth, which swing a hundred times, are out
+// of phase.
 constexpr double default_steps = 1000;
 
 /// A step that the engine can take, and what asked for it.
@@ -35,33 +39,29 @@ struct StepLimit {
   double value = 0;
 };
 
-/// The hinges' springs are explicit, of highest frequency ω² = 16·k/(m·ℓ²) for a moment k·θ on
-/// particles of a straight chain, and their dashpots of rate c in its place. h²ω² + 2hc ≤ ½ stays
-/// well below RATTLE's own limit of 4, since λ̄ lags: on the scenes above at t₀/1000 the 95th
-/// percentile of the gap is 3e-4, with 1 in place of ½ 1.5e-3, with 2 5.6e-3.
-StepLimit hinge_limit(const Chain& chain) {
-  constexpr double limit = 0.5;
-  const double shortest = chain.rest_length.minCoeff();
-  const double per_hinge =
-      16 / (chain.hinge_length.minCoeff() * shortest * shortest * chain.particle_mass);
-  const double squared_frequency = per_hinge * chain.material.hinge_stiffness;
-  const double rate = per_hinge * chain.material.hinge_damping;
-  if (chain.material.hinge_stiffness == 0 && chain.material.hinge_damping == 0) {
-    return {std::numeric_limits<double>::infinity(), "", 0};
-  }
-  const double h = limit / (rate + std::sqrt(rate * rate + limit * squared_frequency));
-  if (rate * rate > squared_frequency)
+/// The hinges are implicit and stable at any step, if the iterations, in proportion to h²ω² + hc,
+/// solve for them. So this is a limit of work: a flight of some rigidity takes as many steps as the
+/// inverse root of this limit and time as its root, and at 600 what explicit hinges took.
+///
+/// A pair of springs also feels how far its joint is open, and the joint's impulse against that
+/// lags behind (λ̄): it bursts from 2 on.
+StepLimit hinge_limit(const Chain& chain, Hinge form) {
+  const double limit = form == Hinge::soft_weld ? 600 : 0.5;
+  const auto [squared_frequency, rate] = hinge_rates(chain);
+  if (squared_frequency == 0 && rate == 0) return {std::numeric_limits<double>::infinity(), "", 0};
+  const double h = 2 * limit / (rate + std::sqrt(rate * rate + 4 * limit * squared_frequency));
+  if (rate > h * squared_frequency)
     return {h, "/cloth/hinge_damping", chain.material.hinge_damping};
   return {h, "/cloth/hinge_stiffness", chain.material.hinge_stiffness};
 }
 
-/// A free flight by no more than a rod per step, half of Box2D's limit.
+/// A launch about the mass centre by no more than a rod per step, half of Box2D's limit.
 StepLimit flight_limit(const Problem& problem) {
   const Chain& chain = problem.chain();
   const double rod = chain.size / static_cast<double>(chain.particles() - 1);
   const Points launch = ballistic_launch(chain.initial, problem.target, problem.arrival_time,
                                          chain.gravity, chain.drag_rate);
-  const double fastest = launch.colwise().norm().maxCoeff() + chain.gravity * problem.arrival_time;
+  const double fastest = shape_of(launch).colwise().norm().maxCoeff();
   return {rod / fastest, "/arrival_time", problem.arrival_time};
 }
 
@@ -71,14 +71,14 @@ StepLimit drag_limit(const Chain& chain) {
 
 }  // namespace
 
-Index count_steps(const Problem& problem) {
+Index count_steps(const Problem& problem, Hinge form) {
   StepLimit tightest{problem.arrival_time / default_steps, "/arrival_time", problem.arrival_time};
   if (problem.time_step) tightest = {*problem.time_step, "/time_step", *problem.time_step};
   if (!(tightest.h > 0)) {
     throw InputError(fmt::format("/time_step: {} is not > 0", tightest.value));
   }
   for (const StepLimit& limit :
-       {hinge_limit(problem.chain()), flight_limit(problem), drag_limit(problem.chain())}) {
+       {hinge_limit(problem.chain(), form), flight_limit(problem), drag_limit(problem.chain())}) {
     if (!(tightest.h <= limit.h)) tightest = limit;
   }
   const double steps = std::ceil(problem.arrival_time / tightest.h * (1 - 1e-12));

@@ -20,7 +20,8 @@ class SheetBackend final : public Backend {
 
   std::unique_ptr<Simulation> do_start(const Points& positions,
                                        const Points& velocities) const override {
-    return make_simulation(sheet_, positions, velocities);
+    return make_simulation(sheet_, MassCenterFlight(*this, positions, velocities), positions,
+                           velocities);
   }
 
   // A hundred times the rounding that a flight collects in single precision.

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace nuno::bullet {
 namespace {
@@ -22,16 +23,14 @@ constexpr std::string_view wild_motion =
     "a particle gets faster than Bullet is asked to move it: the sheet's size L per step about "
     "the mass centre";
 
-// Internal forces sum to zero, and what sums to zero of an outer force is what is left when each
-// particle has had its share by mass of their sum taken off. So the mass centre flies as one
-// particle under that sum, in double precision here, and the sheet about it in Bullet: coordinates
-// there are of the size of the sheet however far it is thrown.
+// The sheet flies about its mass centre in Bullet, see mass_center_flight.h: what acts there of the
+// outer forces is what is left when each particle has had its share by mass of their sum taken off.
 class SheetSimulation final : public Simulation {
  public:
-  SheetSimulation(const UnitSheet& sheet, const Points& positions, const Points& velocities)
+  SheetSimulation(const UnitSheet& sheet, MassCenterFlight center, const Points& positions,
+                  const Points& velocities)
       : sheet_(sheet),
-        center_(mass_center(positions, sheet.mass)),
-        center_velocity_(mass_center(velocities, sheet.mass) * sheet.h),
+        center_(std::move(center)),
         forces_(3, positions.cols()),
         positions_(positions),
         velocities_(velocities) {
@@ -56,7 +55,7 @@ class SheetSimulation final : public Simulation {
     const Vector3d mean = forces_.rowwise().mean();
     forces_ -= mean * sheet_.mass.transpose();
     if (!world_->step(forces_, kick)) return give_up(wild_motion);
-    fly_center(mean, kick);
+    center_.step(sheet_.unit_force * mean);
     read();
     first_ = false;
   }
@@ -68,22 +67,16 @@ class SheetSimulation final : public Simulation {
  private:
   static constexpr double most_apart = 1e5;  // sizes L
 
-  void fly_center(const Vector3d& acceleration, const Kick& kick) {
-    const Vector3d pulled = acceleration - sheet_.gravity * Vector3d::UnitY();
-    center_velocity_ = kick.keep * center_velocity_ + kick.kick * sheet_.unit_length * pulled;
-    center_ += center_velocity_;
-  }
-
   void read() {
     world_->read(positions_, velocities_);
     if (!(positions_.cwiseAbs().maxCoeff() < most_apart)) return give_up(wild_motion);
     // Off with the rounding that the mass centre has gathered there.
     const Vector3d moved = mass_center(positions_, sheet_.mass);
     const Vector3d drift = mass_center(velocities_, sheet_.mass);
-    positions_ = (sheet_.unit_length * (positions_.colwise() - moved)).colwise() + center_;
-    velocities_ =
-        (sheet_.unit_length * (velocities_.colwise() - drift)).colwise() + center_velocity_;
-    velocities_ /= sheet_.h;
+    positions_ =
+        (sheet_.unit_length * (positions_.colwise() - moved)).colwise() + center_.position();
+    const double unit_velocity = sheet_.unit_length / sheet_.h;
+    velocities_ = (unit_velocity * (velocities_.colwise() - drift)).colwise() + center_.velocity();
   }
 
   /// Bullet sees nothing of this cloth from now on.
@@ -95,8 +88,7 @@ class SheetSimulation final : public Simulation {
 
   const UnitSheet& sheet_;
   std::optional<SheetWorld> world_;  // none for a launch that Bullet is not asked to take
-  Vector3d center_;                  // [m]
-  Vector3d center_velocity_;         // mean over the last step [m/step]
+  MassCenterFlight center_;
   Points forces_;
   Points positions_, velocities_;
   std::string_view failure_;  // empty: Bullet flies this cloth
@@ -105,9 +97,9 @@ class SheetSimulation final : public Simulation {
 
 }  // namespace
 
-std::unique_ptr<Simulation> make_simulation(const UnitSheet& sheet, const Points& positions,
-                                            const Points& velocities) {
-  return std::make_unique<SheetSimulation>(sheet, positions, velocities);
+std::unique_ptr<Simulation> make_simulation(const UnitSheet& sheet, const MassCenterFlight& center,
+                                            const Points& positions, const Points& velocities) {
+  return std::make_unique<SheetSimulation>(sheet, center, positions, velocities);
 }
 
 }  // namespace nuno::bullet

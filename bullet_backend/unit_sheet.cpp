@@ -42,7 +42,6 @@ UnitSheet make_unit_sheet(const Sheet& sheet, double h) {
   unit.unit_length = sheet.size;
   unit.unit_force = sheet.particle_mass * sheet.size / (h * h);
   unit.mass = sheet.relative_mass;
-  unit.gravity = sheet.gravity * h * h / sheet.size;
 
   const double stiffness = h * h / sheet.particle_mass;
   const double damping = h / sheet.particle_mass;

@@ -22,7 +22,6 @@ struct UnitSheet {
   Vector mass;             ///< [N], mean 1
   Springs springs;         ///< stretch and shear
   Hinges hinges;
-  double gravity = 0;
   Kick first;  ///< of the first step, which starts at a velocity and not half a step before
   Kick other;
 };

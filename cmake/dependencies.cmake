@@ -32,9 +32,16 @@ function(nuno_find_or_fetch name version target repository tag)
     target_include_directories(${target} INTERFACE "${${fetched}_SOURCE_DIR}/${only_HEADERS}")
     return()
   endif()
-  string(REGEX REPLACE ".*::" "" library ${target})
+  if(TARGET ${target})
+    get_target_property(library ${target} ALIASED_TARGET)
+  else()
+    string(REGEX REPLACE ".*::" "" library ${target})
+  endif()
   get_target_property(directories ${library} INTERFACE_INCLUDE_DIRECTORIES)
-  set_target_properties(${library} PROPERTIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${directories}")
+  if(directories)
+    set_target_properties(
+      ${library} PROPERTIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${directories}")
+  endif()
   if(NOT TARGET ${target})
     add_library(${target} ALIAS ${library})
   endif()
@@ -47,13 +54,32 @@ nuno_find_or_fetch(
 nuno_find_or_fetch(
   nlohmann_json 3.11 nlohmann_json::nlohmann_json https://github.com/nlohmann/json.git v3.11.2
   HEADERS include)
-# Boost.Math alone; it does without the rest of Boost.
-nuno_find_or_fetch(
-  Boost 1.74 Boost::headers https://github.com/boostorg/math.git boost-1.83.0 HEADERS include)
-if("Boost" IN_LIST NUNO_FETCHED)
-  target_compile_definitions(Boost::headers INTERFACE BOOST_MATH_STANDALONE)
+# The library needs Boost.Math alone, which does without the rest of Boost; the studio, Asio and
+# Beast, which do not.
+find_package(Boost 1.74 QUIET CONFIG)
+if(NOT Boost_FOUND AND NUNO_BUILD_DEMOS)
+  message(STATUS "No Boost 1.74 here: fetching 1.83.0")
+  list(APPEND NUNO_FETCHED Boost)
+  set(BOOST_INCLUDE_LIBRARIES asio beast math)
+  FetchContent_Declare(
+    Boost
+    URL https://github.com/boostorg/boost/releases/download/boost-1.83.0/boost-1.83.0.tar.xz)
+  FetchContent_MakeAvailable(Boost)
+  if(NOT TARGET Boost::headers)
+    add_library(nuno_boost INTERFACE)
+    target_link_libraries(nuno_boost INTERFACE Boost::asio Boost::beast Boost::math)
+    add_library(Boost::headers ALIAS nuno_boost)
+  endif()
+else()
+  nuno_find_or_fetch(
+    Boost 1.74 Boost::headers https://github.com/boostorg/math.git boost-1.83.0 HEADERS include)
+  if("Boost" IN_LIST NUNO_FETCHED)
+    target_compile_definitions(Boost::headers INTERFACE BOOST_MATH_STANDALONE)
+  endif()
 endif()
 nuno_find_or_fetch(fmt 9 fmt::fmt https://github.com/fmtlib/fmt.git 9.1.0)
+nuno_find_or_fetch(
+  pugixml 1.12 pugixml::pugixml https://github.com/zeux/pugixml.git v1.13)
 
 # The variables below are options of the projects fetched.
 set(CMAKE_POLICY_DEFAULT_CMP0077 NEW)
@@ -97,20 +123,6 @@ endif()
 if(NUNO_BUILD_DEMOS)
   nuno_find_or_fetch(
     CLI11 2.1 CLI11::CLI11 https://github.com/CLIUtils/CLI11.git v2.1.2 HEADERS include)
-
-  # Debian's is a shared library whose defines, which only pkg-config knows, are part of its ABI.
-  if(PkgConfig_FOUND)
-    pkg_check_modules(cpp-httplib QUIET IMPORTED_TARGET cpp-httplib)
-  endif()
-  add_library(nuno_httplib INTERFACE)
-  add_library(nuno::httplib ALIAS nuno_httplib)
-  if(TARGET PkgConfig::cpp-httplib)
-    target_link_libraries(nuno_httplib INTERFACE PkgConfig::cpp-httplib)
-  else()
-    nuno_find_or_fetch(
-      httplib 0.11 httplib::httplib https://github.com/yhirose/cpp-httplib.git v0.11.4)
-    target_link_libraries(nuno_httplib INTERFACE httplib::httplib)
-  endif()
 endif()
 
 if(NUNO_BUILD_TESTS)

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -25,7 +26,10 @@ void parallel_for(Index count, const std::function<void(Index)>& work) {
   {
     const auto cores = static_cast<Index>(std::max(1u, std::thread::hardware_concurrency()));
     std::vector<std::jthread> threads;
-    for (Index t = 1; t < std::min(cores, count); ++t) threads.emplace_back(take);
+    try {
+      for (Index t = 1; t < std::min(cores, count); ++t) threads.emplace_back(take);
+    } catch (const std::system_error&) {  // the machine has no more: fewer do as well
+    }
     take();
   }
   if (failure) std::rethrow_exception(failure);

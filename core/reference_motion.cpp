@@ -21,6 +21,7 @@ ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
     : moves_(problem.reference == Reference::morph),
       time_step_(time_step),
       step_time_(time_step / problem.arrival_time),
+      stop_(problem.stop),
       relative_mass_(problem.cloth().relative_mass) {
   for (const Points& offset : problem.reference_correction) {
     offsets_.push_back(shape_of(offset, relative_mass_));
@@ -43,6 +44,7 @@ ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
 }
 
 void ReferenceMotion::advance() {
+  if (stop_.stop_requested()) throw Stopped();
   time_ += step_time_;
   const CorrectionShares shares = correction_shares_at(time_);
   for (std::size_t k = 0; k < shares.size(); ++k) {

@@ -54,6 +54,27 @@ class Recorder {
   Rollout& rollout_;
 };
 
+/// The velocities that the control of a sheet is told. An engine knows those of half a step ago, as
+/// the reference does. Both are taken on by half a step, to the time of the positions, so that what
+/// the one lacks of the other is 1½ of that of now less ½ of that of a step ago: damping of second
+/// order in the step. (A chain's control is told the engine's own, and its damping is of first.)
+class VelocityAhead {
+ public:
+  const Points& of(const Points& velocities, const Points& reference) {
+    if (told_.size() == 0) {  // those of the launch are of its own time
+      told_ = velocities;
+    } else {
+      told_ = velocities + 0.5 * ((velocities - before_) - (reference - reference_before_));
+    }
+    before_ = velocities;
+    reference_before_ = reference;
+    return told_;
+  }
+
+ private:
+  Points told_, before_, reference_before_;
+};
+
 /// Largest |l/ℓ − 1| of the edges; NaN if a position is.
 double largest_strain(const Cloth& cloth, const Points& x) {
   double largest = 0;
@@ -116,10 +137,15 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
   Points forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
   Points pulls = forces;
   double squared_force = 0;
+  const bool looks_ahead = problem.is_sheet() && problem.damping_ratio > 0;
+  VelocityAhead ahead;
   recorder.record(0, cloth, false);
   for (Index n = 0; n < backend.steps(); ++n) {
     if (control.pulls()) {
-      control.pull(reference, cloth.positions(), cloth.velocities(), pulls);
+      control.pull(
+          reference, cloth.positions(),
+          looks_ahead ? ahead.of(cloth.velocities(), reference.velocity()) : cloth.velocities(),
+          pulls);
       squared_force += pulls.squaredNorm();
       control.to_forces(pulls, forces);
     }
@@ -146,6 +172,7 @@ void fly_on(const Backend& backend, double tail, Simulation& cloth, Recorder& re
   const Points no_forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
   const auto last = backend.steps() + static_cast<Index>(std::ceil(tail / h * (1 - 1e-9)));
   for (Index n = backend.steps(); n < last; ++n) {
+    problem.stop_where_asked();
     cloth.step(no_forces);
     const double strain = largest_strain(problem.cloth(), cloth.positions());
     if (!(strain < torn_strain)) return tell_divergence(problem, n + 1, strain, cloth, result);

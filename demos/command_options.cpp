@@ -85,6 +85,12 @@ void add_limit(CLI::App& command, const char* name, std::optional<double>& limit
       ->type_name("X");
 }
 
+void add_error_limit(CLI::App& command, std::optional<double>& limit) {
+  add_limit(command, "--error-limit", limit,
+            "The gain of least control effort whose error is at most X\n"
+            "of the cloth's length, instead of the one of least error");
+}
+
 void add_optimizer(CLI::App& command, OptimizeOptions& options) {
   command
       .add_option_function<std::string>(
@@ -95,9 +101,7 @@ void add_optimizer(CLI::App& command, OptimizeOptions& options) {
           fmt::format("Search: {}", fmt::join(optimizer_names, " or ")))
       ->type_name("NAME")
       ->default_str(options.optimizer);
-  add_limit(command, "--error-limit", options.error_limit,
-            "The gain of least control effort whose error is at most X\n"
-            "of the cloth's length, instead of the one of least error");
+  add_error_limit(command, options.error_limit);
   add_limit(command, "--effort-limit", options.effort_limit,
             "The gain of least error whose control effort is at most X");
 }
@@ -185,8 +189,14 @@ Action add_optimize(CLI::App& command) {
 
 Action add_throw(CLI::App& command) {
   const auto options = std::make_shared<ThrowOptions>();
-  add_file(command, "START", options->start, "Mesh of the cloth as it is (.obj)");
-  add_file(command, "TARGET", options->target, "The same mesh as it should be (.obj)");
+  add_file(command, "START", options->start,
+           "The cloth as it is: a mesh (.obj, .ply, .gltf, .glb), or a drawn line\n"
+           "(.svg, .obj, .csv), FILE#ID where there are several");
+  add_file(command, "TARGET", options->target,
+           "The same mesh as it should be, or another line; FILE.glb#NAME is a\n"
+           "shape key (morph target). May be left out where START has a single\n"
+           "shape key, or two lines, initial and target");
+  command.get_option("TARGET")->required(false);
   add_positive(command, "--time", "T", options->arrival_time, "Arrival time [s], > 0");
   command.get_option("--time")->required();
   add_flight_out(command, options->out, options->animation);
@@ -200,14 +210,14 @@ Action add_throw(CLI::App& command) {
             }
             options->material = text;
           },
-          fmt::format("Cloth: {}", material_names()))
+          fmt::format("Cloth of a mesh: {}", material_names()))
       ->type_name("M");
-  add_backend(command, options->backend, sheet_engines,
-              fmt::format("Engine: {}", fmt::join(sheet_engines, " or ")));
+  add_any_backend(command, options->backend);
   add_positive(command, "--frames-per-second", "R", options->frames_per_second,
                "Frames of the animation [1/s], > 0");
   command.get_option("--frames-per-second")
       ->default_str(fmt::format("{}", options->frames_per_second));
+  add_error_limit(command, options->error_limit);
   command.add_flag("--settle", options->settle, "The cloth comes to rest on the target");
   command.footer(
       "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"

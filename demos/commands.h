@@ -58,16 +58,19 @@ struct OptimizeOptions {
   AnimationOptions animation;
 };
 
-/// A cloth of two meshes thrown with what an animator wants: along a damped morph, at the best
-/// gain.
+/// A cloth of two meshes or drawings thrown with what an animator wants: along a damped morph, at
+/// the best gain.
 struct ThrowOptions {
-  std::string start, target;       ///< mesh files, the same faces in two poses
-  double arrival_time = 0;         ///< t₀ [s], > 0
-  std::string material;            ///< one of named_materials; empty: the default values
-  std::string backend = "native";  ///< one of sheet_engines
-  double frames_per_second = 24;   ///< of the animation [1/s], > 0
-  bool settle = false;             ///< the cloth comes to rest on the target
-  std::string out;                 ///< as of the others
+  /// Mesh files, the same faces in two poses; or curves, see drawing.h. Without a target, `start`
+  /// is a mesh with one morph target, or a drawing with two curves called "initial" and "target".
+  std::string start, target;
+  double arrival_time = 0;            ///< t₀ [s], > 0
+  std::string material;               ///< of a mesh, one of named_materials; empty: default values
+  std::string backend = "native";     ///< one of backend_names
+  double frames_per_second = 24;      ///< of the animation [1/s], > 0
+  bool settle = false;                ///< the cloth comes to rest on the target
+  std::optional<double> error_limit;  ///< as of the search
+  std::string out;                    ///< as of the others
   AnimationOptions animation;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <optional>
 
 #include <nuno/comparison.h>
 #include <nuno/conditioning.h>
@@ -121,25 +122,55 @@ void write_report(const std::string& folder, const std::vector<ReportScene>& sce
              (fs::path(folder) / "report.html").string());
 }
 
-}  // namespace
+/// A scene on the two engines that fly it.
+struct Pair {
+  SceneFile file;
+  std::unique_ptr<Backend> first, second;
+};
 
-ExitStatus compare(const CompareOptions& options) {
-  // Every scene is read and every engine made before the first of them runs: a mistake in the last
-  // scene shows at once.
-  struct Pair {
-    SceneFile file;
-    std::unique_ptr<Backend> first, second;
-  };
+/// Every scene is read and every engine made before the first of them runs: a mistake in the last
+/// scene shows at once.
+std::vector<Pair> make_pairs(const std::vector<std::string>& paths) {
   std::vector<Pair> pairs;
-  std::size_t width = 5;
-  for (const std::string& path : scene_paths(options.scenes)) {
+  for (const std::string& path : scene_paths(paths)) {
     SceneFile file = read_scene_file(path);
     const auto& [one, other] = engines_for(file.problem);
     auto first = make_backend(one, file);
     auto second = make_backend(other, file);
-    width = std::max(width, fmt::formatted_size("{:.32}", printable(file.scene.name)));
     pairs.push_back({std::move(file), std::move(first), std::move(second)});
   }
+  return pairs;
+}
+
+/// Width of the table's first column.
+std::size_t scene_column(const std::vector<Pair>& pairs) {
+  std::size_t width = 5;
+  for (const Pair& pair : pairs) {
+    width = std::max(width, fmt::formatted_size("{:.32}", printable(pair.file.scene.name)));
+  }
+  return width;
+}
+
+/// Nothing where a flight diverged, which people are told.
+std::optional<Comparison> compare_pair(const Pair& pair) {
+  Comparison comparison = compare_engines(
+      pair.file.scene.name, *pair.first, *pair.second,
+      {.objective_of = [&](const Backend& backend) {
+        return with_progress(objective(backend),
+                             fmt::format("{} on {}", pair.file.scene.name, backend.name()));
+      }});
+  clear_progress();
+  if (!comparison.divergence) return comparison;
+  const auto& [backend, flight] = *comparison.divergence;
+  report_divergence(pair.file.path, backend == pair.first->name() ? *pair.first : *pair.second,
+                    flight);
+  return std::nullopt;
+}
+
+}  // namespace
+
+ExitStatus compare(const CompareOptions& options) {
+  const std::vector<Pair> pairs = make_pairs(options.scenes);
   std::string out = options.out;
   const bool to_folder = !out.empty() && out != "-";
   if (to_folder) {
@@ -149,29 +180,17 @@ ExitStatus compare(const CompareOptions& options) {
   }
 
   std::FILE* const table = people(out);
-  ExitStatus status = ExitStatus::done;
+  const std::size_t width = scene_column(pairs);
   std::vector<Comparison> comparisons;
   std::vector<ReportScene> report;
   print_heading(table, width);
   for (const Pair& pair : pairs) {
-    Comparison comparison = compare_engines(
-        pair.file.scene.name, *pair.first, *pair.second,
-        {.objective_of = [&](const Backend& backend) {
-          return with_progress(objective(backend),
-                               fmt::format("{} on {}", pair.file.scene.name, backend.name()));
-        }});
-    clear_progress();
-    if (comparison.divergence) {
-      const auto& [backend, flight] = *comparison.divergence;
-      report_divergence(pair.file.path, backend == pair.first->name() ? *pair.first : *pair.second,
-                        flight);
-      status = ExitStatus::diverged;
-      continue;
-    }
-    print_rows(table, width, comparison);
+    std::optional<Comparison> comparison = compare_pair(pair);
+    if (!comparison) continue;
+    print_rows(table, width, *comparison);
     std::fflush(table);
-    if (to_folder) report.push_back(make_report_scene(comparison, *pair.first, *pair.second));
-    comparisons.push_back(std::move(comparison));
+    if (to_folder) report.push_back(make_report_scene(*comparison, *pair.first, *pair.second));
+    comparisons.push_back(std::move(*comparison));
   }
   fmt::print(table,
              "L is the cloth's length, of a sheet √(rest area). Shapes apart: the end shapes of "
@@ -183,7 +202,7 @@ ExitStatus compare(const CompareOptions& options) {
     write_output(out, [&](std::FILE* file) { write_comparisons(file, comparisons); });
   }
   if (!report.empty()) write_report(options.out, report, table);
-  return status;
+  return comparisons.size() == pairs.size() ? ExitStatus::done : ExitStatus::diverged;
 }
 
 }  // namespace nuno

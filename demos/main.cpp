@@ -8,7 +8,6 @@
 #include <nuno/scene.h>
 
 #include <array>
-#include <csignal>
 #include <utility>
 #include <vector>
 
@@ -30,7 +29,7 @@ struct Command {
 constexpr std::array<Command, 7> commands = {{
     {"simulate", "Throw the cloth once, at one gain", add_simulate},
     {"optimize", "Find the gain with the smallest error at arrival", add_optimize},
-    {"throw", "Throw a mesh so that it arrives as another pose of itself, as an animated mesh",
+    {"throw", "Throw a mesh or a drawn line so that it arrives as another shape of itself",
      add_throw},
     {"compare", "Both engines on the same scenes, side by side", add_compare},
     {"studio", "Draw both shapes in the browser, throw, watch", add_studio},
@@ -100,8 +99,7 @@ ExitStatus run_and_complain(int argc, char** argv) {
 }  // namespace nuno
 
 int main(int argc, char** argv) {
-  // A reader that leaves early is an output that cannot be written, not a silent death.
-  std::signal(SIGPIPE, SIG_IGN);
+  nuno::handle_signals();
   // Where standard input is closed, a file of ours would get its number, and a program that we run
   // would read it.
   if (fcntl(STDIN_FILENO, F_GETFD) < 0) open("/dev/null", O_RDONLY);

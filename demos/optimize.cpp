@@ -76,58 +76,16 @@ bool is_better(const Rollout& a, const Rollout& b, const OptimizeOptions& option
                                         : a.error.mean < b.error.mean;
 }
 
-}  // namespace
-
-ExitStatus optimize(const OptimizeOptions& options) {
-  return optimize(read_scene_file(options.scene, options.time_step), options);
+RefineOptions limits_of(const OptimizeOptions& options) {
+  RefineOptions limits;
+  if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
+  if (options.effort_limit) limits.effort_limit = *options.effort_limit;
+  return limits;
 }
 
-ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
-  require_room(file, options.out, options.animation);
-  require_groups(file, options.coefficients);
-  if (options.refine) require_refinable(file);
-  auto backend = make_backend(options.backend, file);
-  require_short_tail(*backend, options.animation.tail);
-  std::FILE* const summary = people(options.out);
-  const Feasibility asked = assess(*backend);
-  if (const std::string words = verdict(asked); !words.empty()) {
-    fmt::print(summary, "{}\n", words);
-  } else if (asked.is_sheet) {
-    fmt::print(summary, "The target is a shape that cloth can take: its edges fit to {:.2g} %.\n",
-               100 * asked.length_mismatch);
-  }
-
-  Optimization found = options.error_limit || options.effort_limit
-                           ? search_front(options, file, *backend)
-                           : search(options, file, *backend);
-  Gains gains = found.summary.gain;
-  double error = found.summary.error;
-  if (options.coefficients > 1) {
-    const JointObjective errors = with_progress(joint_objective(*backend), file.scene.name);
-    found.joint =
-        joint_search(errors, {found.summary.gain, error}, {.groups = options.coefficients});
-    gains = found.joint->stages.back().gains;
-    error = found.joint->stages.back().error;
-  }
-  clear_progress();
-  if (options.refine) {
-    RefineOptions limits;
-    if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
-    if (options.effort_limit) limits.effort_limit = *options.effort_limit;
-    RefineSummary refined = refine_on(options.backend, file, limits);
-    if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.cloth().size)) {
-      found.refinement = std::move(refined);
-      gains = found.refinement->flight.gains;
-      file.problem.reference_correction = found.refinement->reference_correction;
-      backend = make_backend(options.backend, file);
-    } else {
-      fmt::print(summary, "refinement would be no better than the gain alone: left out\n");
-    }
-  }
-  // If every rollout diverged, the one at the gain it ended on says why.
-  const ExitStatus status = fly(file, *backend, gains, options.out, options.animation, found);
-  if (status != ExitStatus::done) return status;
-  const double percent = 100 / file.problem.cloth().size;
+/// Tells people how the answer was found.
+void print_search(std::FILE* summary, const Optimization& found, double length) {
+  const double percent = 100 / length;
   if (found.robust_error) {
     fmt::print(summary, "  {:<17} {:.4g} % of the cloth's length, mean of {} perturbed starts\n",
                "robust error", percent * *found.robust_error, 1 + RobustOptions().perturbations);
@@ -153,6 +111,59 @@ ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
                    : "",
                refined.rollouts, refined.jacobians, duration(refined.seconds), refined.reason);
   }
+}
+
+}  // namespace
+
+ExitStatus optimize(const OptimizeOptions& options) {
+  return optimize(read_scene_file(options.scene, options.time_step), options);
+}
+
+ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
+  require_room(file, options.out, options.animation);
+  require_groups(file, options.coefficients);
+  if (options.refine) require_refinable(file);
+  auto backend = make_backend(options.backend, file);
+  require_short_tail(*backend, options.animation.tail);
+  std::FILE* const summary = people(options.out);
+  const Feasibility asked = assess(*backend);
+  if (const std::string words = verdict(asked); !words.empty()) {
+    fmt::print(summary, "{}\n", words);
+  } else if (asked.is_sheet) {
+    fmt::print(summary, "The target is a shape that cloth can take: its edges fit to {:.2g} %.\n",
+               100 * asked.length_mismatch);
+  }
+
+  Optimization found = [&] {
+    const LongWork told(*backend, file.scene.name, flights_of_search(*backend));
+    return options.error_limit || options.effort_limit ? search_front(options, file, *backend)
+                                                       : search(options, file, *backend);
+  }();
+  Gains gains = found.summary.gain;
+  double error = found.summary.error;
+  if (options.coefficients > 1) {
+    const JointObjective errors = with_progress(joint_objective(*backend), file.scene.name);
+    found.joint =
+        joint_search(errors, {found.summary.gain, error}, {.groups = options.coefficients});
+    gains = found.joint->stages.back().gains;
+    error = found.joint->stages.back().error;
+  }
+  clear_progress();
+  if (options.refine) {
+    RefineSummary refined = refine_on(options.backend, file, limits_of(options));
+    if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.cloth().size)) {
+      found.refinement = std::move(refined);
+      gains = found.refinement->flight.gains;
+      file.problem.reference_correction = found.refinement->reference_correction;
+      backend = make_backend(options.backend, file);
+    } else {
+      fmt::print(summary, "refinement would be no better than the gain alone: left out\n");
+    }
+  }
+  // If every rollout diverged, the one at the gain it ended on says why.
+  const ExitStatus status = fly(file, *backend, gains, options.out, options.animation, found);
+  if (status != ExitStatus::done) return status;
+  print_search(summary, found, file.problem.cloth().size);
   return ExitStatus::done;
 }
 

@@ -7,6 +7,7 @@
 
 #include <nuno/conditioning.h>
 #include <nuno/engines.h>
+#include <nuno/input.h>
 #include <nuno/output.h>
 #include <nuno/progress.h>
 #include "commands.h"
@@ -21,8 +22,8 @@ namespace {
 using namespace figures;
 
 /// What a scene comes to: native at the best gain.
-std::optional<Flight> thrown(const std::string& path) {
-  const SceneFile file = read_scene_file(path);
+std::optional<Flight> thrown(const std::string& text, const std::string& path) {
+  const SceneFile file = make_scene_file(name_of_input(path), parse_any_scene(text, path));
   require_few_frames(file);
   const auto backend = make_backend("native", file);
   const double gain =
@@ -31,7 +32,7 @@ std::optional<Flight> thrown(const std::string& path) {
   const Rollout flight =
       rollout(*backend, gain, {.frames_per_second = file.scene.frames_per_second});
   if (diverged(flight)) {
-    report_divergence(path, *backend, flight);
+    report_divergence(file.path, *backend, flight);
     return std::nullopt;
   }
   return make_flight(file.scene.name, *backend, flight);
@@ -48,7 +49,10 @@ ExitStatus render(const RenderOptions& options) {
   const bool is_svg = extension == ".svg", is_png = extension == ".png";
   std::vector<Flight> flights;
   for (const std::string& path : options.results) {
-    std::optional<Flight> flight = is_scene_file(path) ? thrown(path) : read_result(path);
+    const std::string text = read_input(path);  // once: it may be a pipe
+    const std::string name = name_of_input(path);
+    std::optional<Flight> flight =
+        is_scene(text, name) ? thrown(text, path) : parse_result(text, name);
     if (!flight) return ExitStatus::diverged;
     flights.push_back(std::move(*flight));
   }

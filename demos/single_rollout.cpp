@@ -70,6 +70,7 @@ void require_room(const SceneFile& file, const std::string& out,
 ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains,
                const std::string& out, const AnimationOptions& animation,
                const std::optional<Optimization>& optimization) {
+  const LongWork told(backend, file.scene.name, 2);  // the flight, and the twin that judges it
   const double frames = out.empty() ? 0 : file.scene.frames_per_second;
   const Rollout flight =
       rollout(backend, gains, {.frames_per_second = frames, .tail = animation.tail});
@@ -88,6 +89,11 @@ ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains
     }
   }
   print_summary(people(out), file.scene.name, backend, flight, growth);
+  if (file.mesh) {
+    for (const std::string& remark : file.mesh->remarks) {
+      fmt::print(people(out), "  {:<17} {}\n", "mesh", printable(remark));
+    }
+  }
   return ExitStatus::done;
 }
 

@@ -4,6 +4,7 @@
 
 #include <nuno/box2d.h>
 #include <nuno/bullet.h>
+#include <nuno/input.h>
 #include <nuno/native.h>
 
 #include <algorithm>
@@ -86,7 +87,7 @@ SceneFile read_scene_file(const std::string& path, std::optional<double> time_st
       replace(std::get<SheetInput>(scene).scene);
     }
   }
-  return make_scene_file(path, std::move(scene));
+  return make_scene_file(name_of_input(path), std::move(scene));
 }
 
 double frames_per_second_of(double points, const SceneFile& file) {
@@ -151,7 +152,7 @@ MakeBackend backend_maker(std::string_view name, const SceneFile& file) {
 }
 
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
-                                               double gain) {
+                                               double gain, std::string_view option) {
   std::unique_ptr<Backend> backend = make_backend(name, file);
   // The largest gain goes with 1/h², and an engine may choose shorter steps than it is asked for.
   double steps = 0;
@@ -159,27 +160,23 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
     steps = 2 * std::max(steps, static_cast<double>(backend->steps()));
     if (too_long(steps, file) || steps > most_steps) {
       throw InputError(
-          fmt::format("--alpha: {} is not <= {:.4g}, the largest gain that {} steps "
+          fmt::format("{}: {} is not <= {:.4g}, the largest gain that {} steps "
                       "on {} resolve; more would take too long",
-                      gain, backend->largest_gain(), backend->steps(), name));
+                      option, gain, backend->largest_gain(), backend->steps(), name));
     }
     backend = make_backend(name, file, file.problem.arrival_time / steps);
   }
   return backend;
 }
 
-RefineSummary refine_on(std::string_view name, const SceneFile& file, const RefineOptions& options,
-                        const std::function<void()>& before_rollout) {
-  const auto maker = [&](std::string_view engine) -> MakeBackend {
-    return [&, make = backend_maker(engine, file)](const Problem& problem) {
-      if (before_rollout) before_rollout();
-      return make(problem);
-    };
-  };
-  const MakeBackend model = maker("native");
+RefineSummary refine_on(std::string_view name, const SceneFile& file,
+                        const RefineOptions& options) {
+  const MakeBackend model = backend_maker("native", file);
   const double gain = tracking_gain(*model(file.problem));
   const RefineSummary refined = refine(file.problem, gain, model, model, options);
-  return name == "native" ? refined : transfer(file.problem, refined, maker(name), model, options);
+  return name == "native"
+             ? refined
+             : transfer(file.problem, refined, backend_maker(name, file), model, options);
 }
 
 OptimizeSummary run_optimizer(std::string_view name, const Objective& objective) {

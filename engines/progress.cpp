@@ -1,14 +1,85 @@
 #include <nuno/progress.h>
 
 #include <nuno/conditioning.h>
+#include <nuno/launch.h>
 #include <nuno/output.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <stop_token>
+#include <system_error>
 
 namespace nuno {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What a flight will take [s], from a few of its steps; 0 where that is not worth to be measured.
+double seconds_of_flight(const Backend& backend) {
+  constexpr double short_work = 1e6;  // particle-steps
+  constexpr double measured = 0.02;   // seconds
+  const Cloth& cloth = backend.cloth();
+  const auto steps = static_cast<double>(backend.steps());
+  if (steps * static_cast<double>(cloth.particles()) < short_work) return 0;
+  const auto flight = backend.start(launch(backend));
+  const Points forces = Points::Zero(cloth.dimension(), cloth.particles());
+  const auto start = Clock::now();
+  Index done = 0;
+  while (done < backend.steps() && seconds_since(start) < measured) {
+    flight->step(forces);
+    ++done;
+  }
+  return seconds_since(start) * steps / static_cast<double>(done);
+}
+
+void tell(std::stop_token stop, const std::string& announcement, const std::string& label,
+          double expected) {
+  using std::chrono::seconds;
+  constexpr auto settled = seconds(2), pause = seconds(30);  // what diverges, mostly does at once
+  const auto start = Clock::now();
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  std::unique_lock lock(mutex);
+  const auto goes_on_for = [&](seconds time) {
+    return !ended.wait_for(lock, stop, time, [&] { return stop.stop_requested(); });
+  };
+  if (goes_on_for(settled)) note(announcement);
+  while (!stop.stop_requested() && goes_on_for(pause)) {
+    note(fmt::format("{}: {:.0f} s of about {:.0f}", label, seconds_since(start), expected));
+  }
+}
+
+}  // namespace
+
+LongWork::LongWork(const Backend& backend, const std::string& label, double flights) {
+  constexpr double patience = 10;  // seconds in which nobody asks
+  const double expected = flights * seconds_of_flight(backend);
+  if (!(expected > patience)) return;
+  const std::string announcement =
+      fmt::format("{}: this takes about {:.0f} s on {}", label, expected, backend.name());
+  try {
+    teller_ = std::jthread(tell, announcement, label, expected);
+  } catch (const std::system_error&) {  // the machine has no thread for it
+    note(announcement);
+  }
+}
+
+double flights_of_search(const Backend& backend) {
+  // Some hundred gains over all cores; with derivatives, several of them at the price of one.
+  const double gains = backend.has_derivatives() ? 30 : 100;
+  return gains / std::max(1u, std::thread::hardware_concurrency());
+}
 
 void report_divergence(const std::string& scene_path, const Backend& backend,
                        const Rollout& rollout) {

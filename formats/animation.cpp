@@ -34,6 +34,14 @@ bool counts_frames(std::string_view path) {
   return !path.ends_with(".glb") && !path.ends_with(".usda");
 }
 
+/// The frames with a vertex for each of the mesh's file, copies at seams included.
+Animation in_file_order(Animation animation) {
+  const std::vector<Index>& vertices = animation.mesh.file_vertices;
+  if (vertices.empty()) return animation;
+  for (Points& shape : animation.positions) shape = shape(Eigen::all, vertices).eval();
+  return animation;
+}
+
 }  // namespace
 
 bool is_animation(std::string_view path) {
@@ -58,19 +66,17 @@ void require_animation(const std::string& path, double arrival_time, double fram
 }
 
 void write_animation(const std::string& path, const Animation& animation) {
-  const auto write = [&](void (*writer)(std::FILE*, const Animation&)) {
-    write_output(path, [&](std::FILE* file) { writer(file, animation); });
-  };
   if (path.ends_with(".glb")) {
     write_output(path, [&](std::FILE* file) {
       write_glb(file, animation.name, animation.mesh, animation.times, animation.positions);
     });
-  } else if (path.ends_with(".pc2")) {
-    write(write_pc2);
-  } else if (path.ends_with(".mdd")) {
-    write(write_mdd);
+  } else if (path.ends_with(".pc2") || path.ends_with(".mdd")) {
+    const Animation in_order = in_file_order(animation);
+    write_output(path, [&](std::FILE* file) {
+      (path.ends_with(".pc2") ? write_pc2 : write_mdd)(file, in_order);
+    });
   } else if (path.ends_with(".usda")) {
-    write(write_usda);
+    write_output(path, [&](std::FILE* file) { write_usda(file, animation); });
   } else {
     for (std::size_t k = 0; k < animation.positions.size(); ++k) {
       write_output(numbered(path, animation.first_frame + static_cast<Index>(k)),

@@ -1,83 +1,22 @@
 #include <nuno/mesh.h>
 
 #include <nuno/mesh_fault.h>
-#include <nuno/output.h>
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <optional>
 #include <string_view>
 
+#include "text_file.h"
+
 namespace nuno {
 namespace {
 
-constexpr std::uintmax_t largest_file = 256 << 20;  // bytes: millions of vertices
-constexpr std::size_t most_corners = 1000;          // of a face
-
-/// A place of the file, for messages.
-struct Line {
-  const std::string& source;
-  Index number = 0;
-
-  [[noreturn]] void refuse(std::string_view value, const std::string& rule) const {
-    value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
-    const std::string text = printable(std::string(value.substr(0, 60)));
-    throw InputError(fmt::format("{}:{}: {} {}", source, number, text, rule));
-  }
-};
-
-constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
-constexpr std::string_view blanks = " \t\r\v\f";
-
-/// Cuts the next word off `rest`; empty at its end.
-std::string_view next_word(std::string_view& rest) {
-  const std::size_t start = std::min(rest.find_first_not_of(blanks), rest.size());
-  const std::size_t end = std::min(rest.find_first_of(blanks, start), rest.size());
-  const std::string_view word = rest.substr(start, end - start);
-  rest.remove_prefix(end);
-  return word;
-}
-
-double number(std::string_view word, const Line& line) {
-  std::string_view digits = word;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  const bool is_number = end == digits.data() + digits.size() && !word.starts_with("+-");
-  if (is_number && error == std::errc::result_out_of_range) {
-    value = std::strtod(std::string(digits).c_str(), nullptr);  // 0 or infinity
-  } else if (!is_number || error != std::errc() || std::isnan(value)) {
-    line.refuse(word, "is not a number");
-  }
-  if (!(std::abs(value) <= largest_scene_number)) {
-    line.refuse(word, fmt::format("is not within ±{}", largest_scene_number));
-  }
-  return value;
-}
-
-/// An index of the file, from 1 on or from the back, as one from 0 on.
-Index index(std::string_view text, std::string_view word, Index count, const char* of,
-            const Line& line) {
-  Index value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    line.refuse(word, "is not a corner: v, v/vt, v//vn or v/vt/vn");
-  }
-  const Index from_front = value > 0 ? value - 1 : count + value;
-  if (value == 0 || from_front < 0 || from_front >= count) {
-    line.refuse(word, fmt::format("names a {} that is not among the {} above", of, count));
-  }
-  return from_front;
-}
+constexpr std::size_t most_corners = 1000;  // of a face
 
 struct Corner {
   Index vertex = 0;
@@ -93,8 +32,9 @@ Corner corner(std::string_view word, Index vertices, Index textures, const Line&
     parts[count] = word.substr(start, end - start);
     start = end + 1;
   }
-  Corner result{index(parts[0], word, vertices, "vertex", line), {}};
-  if (!parts[1].empty()) result.texture = index(parts[1], word, textures, "texture point", line);
+  Corner result{obj_index(parts[0], word, vertices, "vertex", line), {}};
+  if (!parts[1].empty())
+    result.texture = obj_index(parts[1], word, textures, "texture point", line);
   return result;
 }
 
@@ -143,7 +83,6 @@ struct Reader {
   }
 
   void read_line(std::string_view rest, const Line& line) {
-    rest = rest.substr(0, rest.find('#'));
     const std::string_view word = next_word(rest);
     static constexpr std::array<std::string_view, 24> passed_over = {
         "vn",     "vp",     "g",      "o",     "s",        "usemtl",   "mtllib",     "l",
@@ -166,34 +105,14 @@ struct Reader {
 
 Mesh parse_obj(const std::string& text, const std::string& source) {
   Reader reader;
-  Line line{source};
-  std::string joined;  // of lines that end in a backslash
-  Index next_line = 1;
-  for (std::size_t start = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
-       start < text.size();) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    std::string_view raw(text.data() + start, end - start);
-    start = end + 1;
-    if (joined.empty()) line.number = next_line;
-    ++next_line;
-    while (raw.ends_with('\r')) raw.remove_suffix(1);
-    if (raw.ends_with('\\')) {
-      raw.remove_suffix(1);
-      joined.append(raw).append(" ");
-      continue;
-    }
-    if (joined.empty()) {
-      reader.read_line(raw, line);
-    } else {
-      reader.read_line(joined.append(raw), line);
-      joined.clear();
-    }
-  }
-  if (!joined.empty()) reader.read_line(joined, line);
+  for_each_obj_line(text, source, [&](std::string_view words, const Line& line) {
+    reader.read_line(words, line);
+  });
   Mesh mesh = std::move(reader.mesh);
   if (mesh.faces.empty())
     throw InputError(fmt::format("{}: has no face (f); a mesh is required", source));
   mesh.vertices = Eigen::Map<const Points>(reader.vertices.data(), 3, reader.vertex_count());
+  mesh.first_number = 1;
   if (reader.all_textured) {
     mesh.texture_coordinates =
         Eigen::Map<const Points>(reader.textures.data(), 2, reader.texture_count());
@@ -201,28 +120,6 @@ Mesh parse_obj(const std::string& text, const std::string& source) {
     mesh.texture_corners.clear();
   }
   return mesh;
-}
-
-Mesh read_mesh(const std::string& path) {
-  std::error_code error;
-  if (!path.ends_with(".obj") && !path.ends_with(".OBJ")) {
-    throw InputError(fmt::format("{}: does not end in .obj", path));
-  }
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{}: is a directory, not a mesh", path));
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading", path));
-  std::string text;
-  std::vector<char> block(1 << 16);
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > largest_file) {
-      throw InputError(fmt::format("{}: is larger than {} MiB", path, largest_file >> 20));
-    }
-  }
-  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", path));
-  return parse_obj(text, path);
 }
 
 std::vector<std::array<Index, 3>> triangulated(const Points& polygon) {
@@ -260,14 +157,17 @@ std::vector<std::array<Index, 3>> triangulated(const Points& polygon) {
 }
 
 void cut_polygons(Mesh& mesh) {
-  Mesh cut{mesh.vertices, {}, mesh.texture_coordinates, {}, {}, mesh.vertex_lines};
+  Mesh cut = mesh;
+  cut.faces.clear();
+  cut.texture_corners.clear();
+  cut.lines.clear();
   const bool textured = !mesh.texture_corners.empty();
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     const std::vector<Index>& face = mesh.faces[f];
     const auto add = [&](auto corners_of) {
       cut.faces.push_back(corners_of(face));
       if (textured) cut.texture_corners.push_back(corners_of(mesh.texture_corners[f]));
-      cut.lines.push_back(mesh.lines[f]);
+      if (!mesh.lines.empty()) cut.lines.push_back(mesh.lines[f]);
     };
     if (face.size() <= 4) {
       add([](const std::vector<Index>& corners) { return corners; });
@@ -285,6 +185,21 @@ void cut_polygons(Mesh& mesh) {
   mesh = std::move(cut);
 }
 
+std::string face_place(const Mesh& mesh, const std::string& path, std::size_t face) {
+  return mesh.lines.empty() ? fmt::format("{}: face {}", path, face)
+                            : fmt::format("{}:{}", path, mesh.lines[face]);
+}
+
+std::string numbers_in_file(const Mesh& mesh, std::vector<Index> face) {
+  for (Index& vertex : face) {
+    if (!mesh.file_vertices.empty()) {  // its first copy's
+      vertex = std::ranges::find(mesh.file_vertices, vertex) - mesh.file_vertices.begin();
+    }
+    vertex += mesh.first_number;
+  }
+  return fmt::format("{}", fmt::join(face, " "));
+}
+
 namespace {
 
 [[noreturn]] void refuse(const Mesh& mesh, const std::string& path, const MeshFault& fault) {
@@ -292,15 +207,14 @@ namespace {
   switch (fault.at) {
     case MeshFault::At::mesh:
       break;
-    case MeshFault::At::face: {
-      std::vector<Index> face = mesh.faces[number];
-      for (Index& vertex : face) ++vertex;  // OBJ counts from 1
-      throw InputError(fmt::format("{}:{}: face {}: {}", path, mesh.lines[number],
-                                   fmt::join(face, " "), fault.what));
-    }
+    case MeshFault::At::face:
+      throw InputError(fmt::format("{}: face {}: {}", face_place(mesh, path, number),
+                                   numbers_in_file(mesh, mesh.faces[number]), fault.what));
     case MeshFault::At::vertex:
-      throw InputError(fmt::format("{}:{}: vertex {}: {}", path, mesh.vertex_lines[number],
-                                   fault.number + 1, fault.what));
+      throw InputError(fmt::format(
+          "{}{}: vertex {}: {}", path,
+          mesh.vertex_lines.empty() ? "" : fmt::format(":{}", mesh.vertex_lines[number]),
+          numbers_in_file(mesh, {fault.number}), fault.what));
   }
   throw InputError(fmt::format("{}: {}", path, fault.what));
 }
@@ -309,7 +223,9 @@ namespace {
 
 void require_sheet(const Mesh& mesh, const std::string& path) {
   require_pose(mesh, path);
-  if (const auto fault = mesh_fault(mesh.vertices, mesh.faces, 1)) refuse(mesh, path, *fault);
+  if (const auto fault = mesh_fault(mesh.vertices, mesh.faces, mesh.first_number)) {
+    refuse(mesh, path, *fault);
+  }
 }
 
 void require_pose(const Mesh& pose, const std::string& path) {
@@ -331,15 +247,16 @@ void require_same_faces(const Mesh& mesh, const std::string& path, const Mesh& p
     refuse(fmt::format("{} faces are not {}, as many", pose.faces.size(), mesh.faces.size()));
   }
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
-    if (pose.faces[i] == mesh.faces[i]) continue;
-    const auto from_one = [](std::vector<Index> face) {
-      for (Index& vertex : face) ++vertex;
-      return fmt::format("{}", fmt::join(face, " "));
-    };
+    const auto& face = mesh.faces[i];
+    if (std::ranges::equal(pose.faces[i], face) ||
+        std::equal(pose.faces[i].rbegin(), pose.faces[i].rend(), face.begin(), face.end())) {
+      continue;
+    }
     throw InputError(fmt::format(
-        "{}:{}: the face {} is {} in {}: the vertices stand in another order, or it is no pose of "
+        "{}: the face {} is {} in {}: the vertices stand in another order, or it is no pose of "
         "the same mesh; export both with the order of vertices kept",
-        pose_path, pose.lines[i], from_one(pose.faces[i]), from_one(mesh.faces[i]), path));
+        face_place(pose, pose_path, i), numbers_in_file(pose, pose.faces[i]),
+        numbers_in_file(mesh, mesh.faces[i]), path));
   }
 }
 

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include <unistd.h>
@@ -21,7 +25,16 @@ namespace fs = std::filesystem;
       fmt::format("{}: cannot be written: {}", path == "-" ? "standard output" : path, why));
 }
 
-constexpr std::array ending_signals = {SIGINT, SIGTERM, SIGHUP};
+constexpr std::array ending_signals = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU};
+
+/// Of the signals that would end the program with a dump of its memory and no word.
+extern "C" void say_and_end(int signal) {
+  const std::string_view word = signal == SIGXCPU
+                                    ? "nuno: the processor time that is allowed has run out\n"
+                                    : "nuno: interrupted\n";
+  [[maybe_unused]] const ssize_t said = ::write(STDERR_FILENO, word.data(), word.size());
+  _exit(1);
+}
 
 /// The signals that end a program wait while this lives, so that none leaves a temporary file.
 class SignalsHeld {
@@ -86,24 +99,74 @@ bool is_device(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status);
 }
 
-/// The file itself where `path` is a link to it: the link stays.
+/// The file itself where `path` is a link to it, there or not yet: the link stays.
 fs::path real_path(const std::string& path) {
+  constexpr int most_links = 40;  // as the system has it
+  fs::path real = path;
   std::error_code error;
-  const fs::path real = fs::weakly_canonical(path, error);
-  return error ? fs::path(path) : real;
+  for (int i = 0; fs::is_symlink(fs::symlink_status(real, error)); ++i) {
+    if (i == most_links) refuse(path, std::strerror(ELOOP));
+    real = real.parent_path() / fs::read_symlink(real, error);
+    if (error) refuse(path, error.message());
+  }
+  return real;
+}
+
+/// Throws for a file that may not be written: a rename would replace it all the same.
+void require_permission(const std::string& path) {
+  if (access(path.c_str(), F_OK) == 0 && access(path.c_str(), W_OK) != 0) {
+    refuse(path, std::strerror(errno));
+  }
 }
 
 constexpr const char* progress_start = "\r\x1b[K";  // of an emptied line
 
+/// Bytes of the character that `text`, which is not empty, begins with; 0 where that is no UTF-8 or
+/// no character of XML.
+std::size_t character_length(std::string_view text) {
+  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char byte = at(0);
+  const std::size_t length = byte < 0x80   ? 1
+                             : byte < 0xc2 ? 0
+                             : byte < 0xe0 ? 2
+                             : byte < 0xf0 ? 3
+                             : byte < 0xf5 ? 4
+                                           : 0;
+  if (length == 0 || length > text.size()) return 0;
+  for (std::size_t k = 1; k < length; ++k) {
+    if ((at(k) & 0xc0) != 0x80) return 0;
+  }
+  // Overlong forms, surrogates, and code points that XML forbids.
+  if (length == 3 && ((byte == 0xe0 && at(1) < 0xa0) || (byte == 0xed && at(1) > 0x9f) ||
+                      (byte == 0xef && at(1) == 0xbf && at(2) > 0xbd))) {
+    return 0;
+  }
+  if (length == 4 && ((byte == 0xf0 && at(1) < 0x90) || (byte == 0xf4 && at(1) > 0x8f))) return 0;
+  return length;
+}
+
+// When progress is told off a terminal again; all threads work at the same for a person.
+using Clock = std::chrono::steady_clock;
+constexpr Clock::time_point no_work{};
+std::atomic<Clock::time_point> next_line = no_work;
+
 bool at_terminal() { return isatty(fileno(stderr)) != 0; }
 
 }  // namespace
+
+void handle_signals() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGQUIT, say_and_end);
+  std::signal(SIGXCPU, say_and_end);
+}
 
 void require_writable(const std::string& path) {
   if (path.empty() || path == "-") return;
   std::error_code error;
   if (fs::is_directory(path, error)) refuse(path, std::strerror(EISDIR));
   if (is_device(path)) return;
+  require_permission(path);
   const SignalsHeld held;
   const TemporaryFile trial(path, real_path(path));
 }
@@ -118,6 +181,7 @@ void write_output(const std::string& path, const std::function<void(std::FILE*)>
     write(file.get());
     if (std::fflush(file.get()) != 0 || std::ferror(file.get())) refuse(path, std::strerror(errno));
   } else {
+    require_permission(path);
     const SignalsHeld held;
     TemporaryFile file(path, real_path(path));
     write(file.get());
@@ -153,10 +217,20 @@ void require_standard_output_written() {
 std::FILE* people(const std::string& out) { return out == "-" ? stderr : stdout; }
 
 std::string printable(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+  std::string result;
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = character_length(std::string_view(text).substr(i));
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (length == 0) {
+      result += "\xef\xbf\xbd";
+    } else if (byte < ' ' || byte == 0x7f) {
+      result += ' ';
+    } else {
+      result.append(text, i, length);
+    }
+    i += std::max<std::size_t>(length, 1);
   }
-  return text;
+  return result;
 }
 
 // A standard error that takes nothing is no reason to stop: fputs and not fmt::print, which throws.
@@ -166,11 +240,25 @@ void complain(const std::string& message) {
   std::fputs((printable(message) + '\n').c_str(), stderr);
 }
 
+void note(const std::string& message) { complain(message); }
+
 void show_progress(const std::string& text) {
-  if (at_terminal()) std::fputs((progress_start + printable(text)).c_str(), stderr);
+  if (at_terminal()) {
+    std::fputs((progress_start + printable(text)).c_str(), stderr);
+    return;
+  }
+  constexpr auto patience = std::chrono::seconds(10), pause = std::chrono::seconds(30);
+  const auto now = Clock::now();
+  Clock::time_point due = next_line;
+  if (due == no_work) {
+    next_line = now + patience;
+  } else if (now >= due && next_line.compare_exchange_strong(due, now + pause)) {
+    std::fputs((printable(text) + '\n').c_str(), stderr);
+  }
 }
 
 void clear_progress() {
+  next_line = no_work;
   if (at_terminal()) std::fputs(progress_start, stderr);
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "result_json.h"
+
 namespace nuno {
 namespace {
 
@@ -51,24 +53,10 @@ Json to_json(const Points& points) {
   return array;
 }
 
-std::string_view word_for(OptimizeStatus status) {
-  return status == OptimizeStatus::converged ? "converged" : "budget";
-}
-
 Json to_json(const Optimization& optimization) {
-  const OptimizeSummary& summary = optimization.summary;
-  Json history = Json::array();
-  for (const Evaluation& evaluation : summary.history) {
-    // A diverged rollout has no error to note.
-    if (!std::isfinite(evaluation.error)) continue;
-    history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
-  }
-  Json result = {{"optimizer", optimization.optimizer},
-                 {"status", word_for(summary.status)},
-                 {"evaluations", summary.evaluations},
-                 {"seconds", summary.seconds}};
+  Json result = search_head(optimization.optimizer, optimization.summary);
   if (optimization.robust_error) result["robust_error"] = *optimization.robust_error;
-  result["history"] = history;
+  result["history"] = history_of(optimization.summary);
   if (!optimization.pareto_front.empty()) {
     Json curve = Json::array();
     for (const ParetoPoint& point : optimization.pareto_front) {
@@ -95,23 +83,20 @@ Json to_json(const Optimization& optimization) {
     for (const Points& offset : refinement.reference_correction)
       reference_correction.push_back(to_json(offset));
     Json& told = result["refinement"];
-    told = {{"status", refinement.converged ? "converged" : "nearest"},
-            {"reason", refinement.reason},
-            {"rollouts", refinement.rollouts},
-            {"jacobians", refinement.jacobians},
-            {"seconds", refinement.seconds},
-            {"reference_correction", reference_correction}};
+    told = refinement_head(refinement);
+    told["reference_correction"] = reference_correction;
     if (std::isfinite(refinement.error_before)) told["error_before"] = refinement.error_before;
   }
   return result;
 }
 
 /// Frames one by one: all of them as JSON at once take ten times their own memory.
-void print_frames(std::FILE* file, const Rollout& rollout) {
+void print_frames(std::FILE* file, const Problem& problem, const Rollout& rollout) {
   fmt::print(file, " \"frames\": {{\n  \"times\": {},\n  \"positions\": [",
              on_one_line(rollout.frame_times));
   const char* separator = "\n";
   for (const Points& positions : rollout.frame_positions) {
+    problem.stop_where_asked();
     fmt::print(file, "{}   {}", separator, on_one_line(to_json(positions)));
     separator = ",\n";
   }
@@ -157,23 +142,9 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
                   const Rollout& rollout, double sensitivity,
                   const std::optional<Optimization>& optimization) {
   const Problem& problem = backend.problem();
-  Json head = {{"nuno_result", 1},
-               {"scene", scene},
-               {"backend", backend.name()},
-               {"status", "ok"},
-               {"alpha", rollout.gains.rest},
-               {"time_step", backend.time_step()},
-               {"steps", backend.steps()},
-               {problem.is_sheet() ? "size" : "cloth_length", problem.cloth().size},
-               {"target_scale", problem.target_scale},
-               {"error",
-                {{"mean", rollout.error.mean},
-                 {"max", rollout.error.max},
-                 {"centroid", rollout.error.centroid},
-                 {"relative", rollout.error.mean / problem.cloth().size}}},
-               {"control_effort", rollout.control_effort},
-               {"max_strain", rollout.max_strain},
-               {"sensitivity", sensitivity}};
+  Json head = {{"nuno_result", 1}};
+  head.update(result_head(scene, backend, rollout));
+  head["sensitivity"] = sensitivity;
   if (rollout.gains.count() > 1) head["alphas"] = rollout.gains.groups();
   if (optimization) head["optimization"] = to_json(*optimization);
   if (problem.is_sheet()) {
@@ -191,7 +162,7 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
     print(file, item.value(), 1);
     fmt::print(file, ",\n");
   }
-  print_frames(file, rollout);
+  print_frames(file, problem, rollout);
   fmt::print(file, "\n}}\n");
 }
 

@@ -1,3 +1,4 @@
+#include <nuno/input.h>
 #include <nuno/materials.h>
 #include <nuno/scene_file.h>
 
@@ -7,39 +8,20 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <span>
 #include <type_traits>
 #include <vector>
+
+#include "compact_json.h"
+#include "json_field.h"
 
 namespace nuno {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// A place in a scene file, for messages.
-struct Field {
-  const std::string& source;
-  std::string pointer;
-
-  Field child(std::string_view name) const { return {source, fmt::format("{}/{}", pointer, name)}; }
-
-  [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError(fmt::format("{}: {}: {}", source, pointer.empty() ? "/" : pointer, what));
-  }
-};
-
-/// A value as a message shows it: on one line, cut where it is long.
-std::string shown(const Json& value) {
-  std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-  if (text.size() > 60) text = text.substr(0, 57) + "...";
-  return text;
-}
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -103,19 +85,16 @@ void read(const Json& object, const Field& parent, const char* name, std::string
 }
 
 void read(const Json& object, const Field& parent, const char* name, Points& into) {
-  const Field at = parent.child(name);
   const Json& points = object[name];
-  if (!points.is_array()) at.refuse(fmt::format("{} is not an array of points", shown(points)));
-  into.resize(2, static_cast<Index>(points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Field point_at = at.child(std::to_string(i));
-    if (!points[i].is_array() || points[i].size() != 2) {
-      point_at.refuse(fmt::format("{} is not a point [x, y]", shown(points[i])));
-    }
-    for (std::size_t row = 0; row < 2; ++row) {
-      into(static_cast<Index>(row), static_cast<Index>(i)) =
-          number(points[i][row], point_at.child(std::to_string(row)));
-    }
+  if (points.is_array()) {  // only one without points comes as a list
+    into.resize(2, 0);
+    return;
+  }
+  const Field at = parent.child(name);
+  if (!points.is_binary()) at.refuse(fmt::format("{} is not an array of points", shown(points)));
+  into = points_of(points);
+  if (into.rows() != 2) {
+    at.child("0").refuse(fmt::format("[{}] is not a point [x, y]", fmt::join(into.col(0), ",")));
   }
 }
 
@@ -156,36 +135,8 @@ std::string_view word_for(const Words& words, Enum value) {
   return std::ranges::find(words, value, [](const auto& word) { return word.value; })->text;
 }
 
-/// The JSON of `text`; an InputError for what is no JSON or names a field of an object twice.
-Json parse_json(const std::string& text, const std::string& source) {
-  std::vector<std::set<std::string>> names;
-  // A scene is three deep. Far deeper values could not even be shown without running out of stack.
-  constexpr int deepest = 16;
-  const auto watch = [&](int depth, Json::parse_event_t event, Json& value) {
-    if (depth > deepest) {
-      throw InputError(
-          fmt::format("{}: /: not a scene: nested more than {} deep", source, deepest));
-    }
-    if (event == Json::parse_event_t::object_start) {
-      names.emplace_back();
-    } else if (event == Json::parse_event_t::object_end) {
-      names.pop_back();
-    } else if (event == Json::parse_event_t::key &&
-               !names.back().insert(value.get<std::string>()).second) {
-      throw InputError(fmt::format("{}: /: {} stands twice in one object", source, shown(value)));
-    }
-    return true;
-  };
-  try {
-    return Json::parse(text, watch);
-  } catch (const Json::exception& error) {
-    std::string what = error.what();  // "[json.exception.…] message", possibly over several lines
-    if (const auto end = what.find("] "); end != std::string::npos) what = what.substr(end + 2);
-    std::ranges::replace_if(
-        what, [](char c) { return static_cast<unsigned char>(c) < ' '; }, ' ');
-    throw InputError(fmt::format("{}: /: not JSON: {}", source, what));
-  }
-}
+/// A scene's fields take numbers and words, but for its shapes.
+const JsonForm scene_form = {.points = {{"/initial", 0}, {"/target", 0}}, .longest_list = 64};
 
 Json to_json(const Points& points) {
   Json array = Json::array();
@@ -322,7 +273,8 @@ void read_named_material(const Json& json, const Field& root, SheetMaterial& clo
   }
 }
 
-SheetInput read_sheet(const Json& json, const std::string& source) {
+SheetInput read_sheet(const Json& json, const std::string& source,
+                      const std::filesystem::path& folder) {
   const Field root{source, ""};
   require_fields<SheetScene>(json, root);
   std::string initial, target;
@@ -334,33 +286,23 @@ SheetInput read_sheet(const Json& json, const std::string& source) {
   read_named_material(json, root, scene.cloth);
   read_material(json, root, scene.cloth);
   visit_last(scene, FieldReader{json, root});
-  const std::filesystem::path folder = std::filesystem::path(source).parent_path();
   return with_meshes(std::move(scene), (folder / initial).string(), (folder / target).string(),
                      source);
 }
 
-std::string text_of(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{}: /: is a directory, not a scene file", path));
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: /: cannot be opened for reading", path));
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) throw InputError(fmt::format("{}: /: cannot be read", path));
-  return text;
-}
-
 }  // namespace
 
-AnyScene read_scene(const std::string& path) {
-  const Json json = parse_json(text_of(path), path);
-  if (is_sheet(json)) return read_sheet(json, path);
-  return read_chain(json, path);
+AnyScene read_scene(const std::string& path) { return parse_any_scene(read_input(path), path); }
+
+AnyScene parse_any_scene(const std::string& text, const std::string& path) {
+  const std::string source = name_of_input(path);
+  const Json json = parse_compact(text, source, scene_form);
+  if (is_sheet(json)) return read_sheet(json, source, std::filesystem::path(path).parent_path());
+  return read_chain(json, source);
 }
 
 ChainScene parse_scene(const std::string& text, const std::string& source) {
-  const Json json = parse_json(text, source);
+  const Json json = parse_compact(text, source, scene_form);
   if (is_sheet(json)) {
     const Field at = Field{source, ""}.child("initial");
     at.refuse("a mesh file is not read here; give the points of a chain");
@@ -382,11 +324,17 @@ std::string to_json(const ChainScene& scene) {
 SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
                        const std::string& source) {
   Mesh start = read_mesh(initial);
-  const Mesh end = read_mesh(target);
+  Mesh end = read_mesh(target);
+  weld_seams(start, end);
   require_same_faces(start, initial, end, target);
   cut_polygons(start);
   require_sheet(start, initial);
   require_pose(end, target);
+  for (const std::string& remark : end.remarks) {
+    if (std::ranges::find(start.remarks, remark) == start.remarks.end()) {
+      start.remarks.push_back(remark);
+    }
+  }
   scene.initial = start.vertices;
   scene.target = end.vertices;
   scene.faces = start.faces;

@@ -9,12 +9,15 @@
 
 namespace nuno::native {
 
-/// The constants of one chain in the scheme of chain_step-inl.h, the same for every gain.
+/// The constants of one chain in the scheme of chain_step-inl.h or, with implicit hinges, of
+/// implicit_hinges-inl.h, the same for every gain.
 struct ChainPlan {
   Index particles = 0;
   Index steps = 0;
   double h = 0;                         ///< time step [s]
   std::span<const double> rest_length;  ///< ℓ [N − 1], the chain's own
+  bool implicit_hinges = false;
+  std::span<const double> hinge_length;  ///< ℓ̄ [N − 2], the chain's own
   std::vector<double> hinge_spring;   ///< EI/ℓ̄ of the hinge at each particle, 0 at the ends [N]
   std::vector<double> hinge_dashpot;  ///< ηI/ℓ̄ [N]; empty where the hinges have no damping
   double particle_mass = 0;           ///< m [kg]
@@ -22,12 +25,15 @@ struct ChainPlan {
 
   /// One kick of the velocities: v' = keep·v − (0, fall) + force·(forces).
   struct Kick {
-    double keep = 0;        ///< r [1]
-    double fall = 0;        ///< q·g [m/s]
-    double force = 0;       ///< p = q/m [s/kg]
-    double strain = 0;      ///< EA/c⁺, see chain_step-inl.h
-    double rate = 0;        ///< c⁻/c⁺
-    double compliance = 0;  ///< 1/(c⁺·p) [1/m]
+    double keep = 0;          ///< r [1]
+    double fall = 0;          ///< q·g [m/s]
+    double force = 0;         ///< p = q/m [s/kg]
+    double strain = 0;        ///< EA/c⁺, see chain_step-inl.h
+    double rate = 0;          ///< c⁻/c⁺
+    double compliance = 0;    ///< 1/(c⁺·p) [1/m]
+    double hinge_strain = 0;  ///< the same of implicit hinges: EI/c⁺, c⁺ of a hinge times ℓ̄
+    double hinge_rate = 0;
+    double hinge_compliance = 0;  ///< [1/m³]
   };
   Kick first;  ///< from rest to half a step
   Kick full;
@@ -35,7 +41,8 @@ struct ChainPlan {
 
 /// A state is two arrays [2N], x and y of a particle side by side, like Points.
 struct ScalarScratch {
-  explicit ScalarScratch(Index particles) : values(static_cast<std::size_t>(4 * particles)) {}
+  explicit ScalarScratch(const ChainPlan& plan)
+      : values(static_cast<std::size_t>((plan.implicit_hinges ? 12 : 4) * plan.particles)) {}
   std::vector<double> values;
 };
 

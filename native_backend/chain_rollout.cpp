@@ -21,10 +21,12 @@ namespace HWY_NAMESPACE {
 void step_scalar(const ChainPlan& plan, bool first, const double* forces, double* positions,
                  double* velocities, ScalarScratch& scratch) {
   static_assert(sizeof(Vec2<Real>) == 2 * sizeof(double) &&
-                sizeof(Segment<Real>) == 4 * sizeof(double));
+                sizeof(Segment<Real>) == 4 * sizeof(double) &&
+                sizeof(StiffSegment<Real>) == 12 * sizeof(double));
   advance<false>(plan, first, reinterpret_cast<Vec2<Real>*>(positions),
                  reinterpret_cast<Vec2<Real>*>(velocities),
                  reinterpret_cast<Segment<Real>*>(scratch.values.data()),
+                 reinterpret_cast<StiffSegment<Real>*>(scratch.values.data()),
                  [forces](Index j, const Vec2<Real>&, const Vec2<Real>&) NUNO_INLINE_LAMBDA {
                    return Vec2<Real>{forces[2 * j], forces[2 * j + 1]};
                  });
@@ -158,7 +160,7 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
   const auto size = static_cast<std::size_t>(n);
   const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
-  const std::unique_ptr<Segment<T>[]> segments(new Segment<T>[size]);
+  const Scratch<T> scratch(plan);
   const T zero = Constant<T>::of(0);
   Sums<T> sums{{zero, zero}, {zero, zero}};
   for (Index i = n; i-- > 0;) {
@@ -191,16 +193,14 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
           n, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
           [&](Index j) NUNO_INLINE_LAMBDA { return lag(j, v[j]); });
     }
-    sums = advance<damped_control>(plan, step == 0, x.get(), v.get(), segments.get(),
-                                   [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity)
-                                       NUNO_INLINE_LAMBDA {
-                                         Vec2<T> force = gain * offset(j, position);
-                                         if constexpr (damped_control)
-                                           force = force + damping * lag(j, velocity);
-                                         if constexpr (control == Control::grouped)
-                                           force = low_modes.add_to(force, j);
-                                         return force;
-                                       });
+    sums = advance<damped_control>(
+        plan, step == 0, x.get(), v.get(), scratch.segments.get(), scratch.stiff_segments.get(),
+        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
+          Vec2<T> force = gain * offset(j, position);
+          if constexpr (damped_control) force = force + damping * lag(j, velocity);
+          if constexpr (control == Control::grouped) force = low_modes.add_to(force, j);
+          return force;
+        });
     reference.advance();
   }
   const Index count = gains.flights();

@@ -34,44 +34,15 @@
 #include "chain_kernel.h"
 
 #include <hwy/highway.h>
-#include "number-inl.h"
+#include "implicit_hinges-inl.h"
+#include "vector-inl.h"
 
 #include <algorithm>
+#include <memory>
 
 HWY_BEFORE_NAMESPACE();
 namespace nuno::native {
 namespace HWY_NAMESPACE {
-
-// For lambdas: compiled for the target and always inlined. One that GCC 12 leaves on its own, as it
-// does in sanitized builds, finds its captures broken where the caller's stack is realigned for
-// wide vectors.
-#undef NUNO_INLINE_LAMBDA
-#define NUNO_INLINE_LAMBDA __attribute__((always_inline)) HWY_ATTR
-
-template <typename T>
-struct Vec2 {
-  T x, y;
-};
-template <typename T>
-HWY_INLINE Vec2<T> operator+(Vec2<T> a, Vec2<T> b) {
-  return {a.x + b.x, a.y + b.y};
-}
-template <typename T>
-HWY_INLINE Vec2<T> operator-(Vec2<T> a, Vec2<T> b) {
-  return {a.x - b.x, a.y - b.y};
-}
-template <typename T>
-HWY_INLINE Vec2<T> operator*(T a, Vec2<T> b) {
-  return {a * b.x, a * b.y};
-}
-template <typename T>
-HWY_INLINE T dot(Vec2<T> a, Vec2<T> b) {
-  return mul_add(a.x, b.x, a.y * b.y);
-}
-template <typename T>
-HWY_INLINE T cross(Vec2<T> a, Vec2<T> b) {
-  return neg_mul_add(a.y, b.x, a.x * b.y);
-}
 
 /// A segment on the way up: first what it is, then its row of the eliminated system.
 template <typename T>
@@ -79,13 +50,6 @@ struct Segment {
   Vec2<T> direction;
   T offset;  ///< first what strain and old rate put on the right; then τᵢ = offset + factor·τᵢ₊₁
   T factor;  ///< first cosθᵢ of the hinge below
-};
-
-/// Sums over the particles.
-template <typename T>
-struct Sums {
-  Vec2<T> position;
-  Vec2<T> velocity;  ///< only where control is damped
 };
 
 /// The way up goes strip by strip and in four loops over each, whose iterations wait for little of
@@ -208,11 +172,30 @@ HWY_INLINE Sums<T> go_down(const ChainPlan& plan, Vec2<T>* x, Vec2<T>* v,
   return sums;
 }
 
+/// What a step works on besides the state.
+template <typename T>
+class Scratch {
+ public:
+  explicit Scratch(const ChainPlan& plan)
+      : segments(
+            new Segment<T>[static_cast<std::size_t>(plan.implicit_hinges ? 0 : plan.particles)]),
+        stiff_segments(new StiffSegment<T>[static_cast<std::size_t>(
+            plan.implicit_hinges ? plan.particles : 0)]) {}
+
+  const std::unique_ptr<Segment<T>[]> segments;
+  const std::unique_ptr<StiffSegment<T>[]> stiff_segments;
+};
+
 /// One step. `external(j, x, v)` is the force on particle j; returns the sums after the step.
 template <bool damped_control, typename T, typename External>
 HWY_INLINE Sums<T> advance(const ChainPlan& plan, bool first, Vec2<T>* x, Vec2<T>* v,
-                           Segment<T>* segments, External&& external) {
+                           Segment<T>* segments, StiffSegment<T>* stiff_segments,
+                           External&& external) {
   const ChainPlan::Kick& kick = first ? plan.first : plan.full;
+  if (plan.implicit_hinges) {
+    go_up_stiff(plan, kick, x, v, stiff_segments, external);
+    return go_down_stiff<damped_control>(plan, x, v, stiff_segments);
+  }
   if (plan.hinge_dashpot.empty()) {
     go_up<false>(plan, kick, x, v, segments, external);
   } else {

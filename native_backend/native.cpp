@@ -6,9 +6,8 @@
 #include <nuno/rollout.h>
 #include <nuno/shape_control.h>
 
-#include <fmt/format.h>
-
 #include "chain_kernel.h"
+#include "chain_steps.h"
 #include "sheet_backend.h"
 
 #include <algorithm>
@@ -24,7 +23,14 @@ double kick_duration(double drag_rate, double h) {
   return drag_rate * h > 0 ? -std::expm1(-drag_rate * h) / drag_rate : h;
 }
 
-ChainPlan::Kick make_kick(const Chain& chain, double h, double duration, double new_length_weight) {
+/// How much of a step's change of length or angle, after and before, a kick adds to its present
+/// one.
+struct Weights {
+  double after, before;
+};
+
+ChainPlan::Kick make_kick(const Chain& chain, double h, double duration, Weights length,
+                          Weights turn) {
   const double stiffness = chain.material.stretch_stiffness;
   const double damping = chain.material.stretch_damping;
   const double q = kick_duration(chain.drag_rate, duration);
@@ -32,21 +38,26 @@ ChainPlan::Kick make_kick(const Chain& chain, double h, double duration, double 
   kick.keep = std::exp(-chain.drag_rate * duration);
   kick.fall = q * chain.gravity;
   kick.force = q / chain.particle_mass;
-  const double after = stiffness * h * new_length_weight + damping / 2;
-  const double before = stiffness * h * (new_length_weight - 0.5) + damping / 2;
+  const double after = stiffness * h * length.after + damping / 2;
+  const double before = stiffness * h * length.before + damping / 2;
   kick.strain = stiffness / after;
   kick.rate = before / after;
   kick.compliance = 1 / (after * kick.force);
+  const double hinge = chain.material.hinge_stiffness, dashpot = chain.material.hinge_damping;
+  const double hinge_after = hinge * h * turn.after + dashpot / 2;
+  kick.hinge_strain = hinge / hinge_after;
+  kick.hinge_rate = (hinge * h * turn.before + dashpot / 2) / hinge_after;
+  kick.hinge_compliance = 1 / (hinge_after * kick.force);
   return kick;
 }
 
 /// Of a problem that outlives it.
-ChainPlan make_plan(const Problem& problem, Index steps) {
+ChainPlan make_plan(const Problem& problem, const ChainSteps& chosen) {
   const Chain& chain = problem.chain();
   ChainPlan plan;
   plan.particles = chain.particles();
-  plan.steps = steps;
-  plan.h = problem.arrival_time / static_cast<double>(steps);
+  plan.steps = chosen.count;
+  plan.h = problem.arrival_time / static_cast<double>(chosen.count);
   plan.rest_length = {chain.rest_length.data(), static_cast<std::size_t>(chain.particles() - 1)};
   const auto at_hinges = [&](double value) {
     std::vector<double> result(static_cast<std::size_t>(chain.particles()), 0.0);
@@ -58,17 +69,21 @@ ChainPlan make_plan(const Problem& problem, Index steps) {
   plan.hinge_spring = at_hinges(chain.material.hinge_stiffness);
   if (chain.material.hinge_damping > 0)
     plan.hinge_dashpot = at_hinges(chain.material.hinge_damping);
+  plan.implicit_hinges = chosen.implicit_hinges;
+  plan.hinge_length = {chain.hinge_length.data(), static_cast<std::size_t>(chain.particles() - 2)};
   plan.particle_mass = chain.particle_mass;
   plan.damping_ratio = problem.damping_ratio;
-  plan.first = make_kick(chain, plan.h, plan.h / 2, 0.5);
-  plan.full = make_kick(chain, plan.h, plan.h, 0.25);
+  // At the start, positions before and after are in mirror: s₋ + s₊ = 2s + 2h·(ṡ' − ṡ).
+  constexpr double b = 0.3;  // see implicit_hinges-inl.h
+  plan.first = make_kick(chain, plan.h, plan.h / 2, {0.5, 0}, {2 * b, -2 * b});
+  plan.full = make_kick(chain, plan.h, plan.h, {0.25, -0.25}, {b, -b});
   return plan;
 }
 
 class ChainSimulation final : public Simulation {
  public:
   ChainSimulation(const ChainPlan& plan, const Points& positions, const Points& velocities)
-      : plan_(plan), positions_(positions), velocities_(velocities), scratch_(plan.particles) {}
+      : plan_(plan), positions_(positions), velocities_(velocities), scratch_(plan) {}
 
   void step(const Points& forces) override {
     native::step(plan_, first_, forces.data(), positions_.data(), velocities_.data(), scratch_);
@@ -87,8 +102,9 @@ class ChainSimulation final : public Simulation {
 
 class NativeBackend final : public Backend {
  public:
-  NativeBackend(Problem problem, Index steps)
-      : Backend("native", std::move(problem), steps), plan_(make_plan(this->problem(), steps)) {}
+  NativeBackend(Problem problem, const ChainSteps& chosen)
+      : Backend("native", std::move(problem), chosen.count),
+        plan_(make_plan(this->problem(), chosen)) {}
 
  private:
   DragRecurrence do_drag_recurrence() const override {
@@ -294,52 +310,11 @@ class NativeBackend final : public Backend {
   ChainPlan plan_;
 };
 
-/// The largest stable step of the explicit part, hinges and their damping; and the field that asks
-/// for it.
-///
-/// With ω the highest frequency of the hinges and c their highest damping rate, the leapfrog with
-/// lagging dashpots is stable where h²ω² + 2hc < 4. A hinge's energy ½·kθ² has the largest
-/// curvature 16·k/ℓ² over the particles of a straight chain.
-struct StableStep {
-  double h = 0;
-  const char* field = "";
-};
-
-StableStep stable_step(const Chain& chain) {
-  const double shortest = chain.rest_length.minCoeff();
-  const double per_hinge =
-      16 / (chain.hinge_length.minCoeff() * shortest * shortest * chain.particle_mass);
-  const double squared_frequency = per_hinge * chain.material.hinge_stiffness;
-  const double rate = per_hinge * chain.material.hinge_damping;
-  // h = 4/(c + √(c² + 4ω²)), the root of h²ω² + 2hc = 4.
-  return {4 / (rate + std::sqrt(rate * rate + 4 * squared_frequency)),
-          rate * rate > 4 * squared_frequency ? "/cloth/hinge_damping" : "/cloth/hinge_stiffness"};
-}
-
 }  // namespace
 
 std::unique_ptr<Backend> make_backend(const Problem& problem) {
   if (problem.is_sheet()) return make_sheet_backend(problem);
-  // A quarter of the stable step leaves room for hinges that stiffen where segments are compressed:
-  // at half of it, one of the 64 scenes of the library's family diverges at some gains, here none.
-  // 1/800 of the flight keeps E(α) within 5e-4 of the cloth's length on the reference scenes.
-  constexpr double safety = 0.25;
-  constexpr double default_steps = 800;
-
-  const StableStep stable = stable_step(problem.chain());
-  double h = problem.time_step.value_or(problem.arrival_time / default_steps);
-  const char* field = problem.time_step ? "/time_step" : "/arrival_time";
-  if (!(h > 0)) throw InputError(fmt::format("/time_step: {} is not > 0", h));
-  if (!(h <= safety * stable.h)) {
-    h = safety * stable.h;
-    field = stable.field;
-  }
-  const double steps = std::ceil(problem.arrival_time / h * (1 - 1e-12));
-  if (!(steps <= most_steps)) {
-    throw InputError(fmt::format("{}: asks for {:.3g} steps on native, which is not <= {:.0f}",
-                                 field, steps, most_steps));
-  }
-  return std::make_unique<NativeBackend>(problem, std::max<Index>(static_cast<Index>(steps), 1));
+  return std::make_unique<NativeBackend>(problem, choose_chain_steps(problem));
 }
 
 }  // namespace nuno::native

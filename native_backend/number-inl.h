@@ -246,6 +246,15 @@ HWY_INLINE Dual<T, S> reciprocal_of_difference(T c, Dual<T, S> a, Dual<T, S> b) 
   const T value = reciprocal_of_difference(c, a.value, b.value);
   return {value, value * value * mul_add(a.derivative, b.value, a.value * b.derivative)};
 }
+template <typename T>
+HWY_INLINE T reciprocal(T a) {
+  return T(1.0) / a;
+}
+template <typename T, typename S>
+HWY_INLINE Dual<T, S> reciprocal(Dual<T, S> a) {
+  const T value = reciprocal(a.value);
+  return {value, T(-1.0) * value * value * a.derivative};
+}
 template <typename T, typename S>
 HWY_INLINE Dual<T, S> rsqrt(Dual<T, S> a) {
   const T value = rsqrt(a.value);

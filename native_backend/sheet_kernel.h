@@ -67,7 +67,7 @@ void in_user_order(const SheetPlan& plan, const std::vector<double>& values, Poi
 
 /// Whole flights of one sheet from `start`, one for each gain: final positions [3N] after another
 /// in `finals`, and their derivatives with respect to the gain in `derivatives` unless that is
-/// null. Equal, bit for bit, to steps of `step` under ShapeControl.
+/// null. Equal, bit for bit, to rollouts of the core by `step`.
 void fly(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
          std::span<const double> gains, double* finals, double* derivatives);
 

@@ -126,12 +126,31 @@ void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const She
                              reinterpret_cast<Vec3<T>*>(impulse.get()), length.get(), turn.get(),
                              velocity};
   const SheetControl<T> control(plan, gains);
+  // As the core's rollout does, velocities are taken on by half a step, with the reference's.
+  const std::unique_ptr<T[]> told = broadcast(start.velocities);
+  const std::unique_ptr<T[]> before = broadcast(start.velocities);
+  auto* told_velocity = damped_control ? reinterpret_cast<Vec3<T>*>(told.get()) : nullptr;
+  auto* velocity_before = damped_control ? reinterpret_cast<Vec3<T>*>(before.get()) : nullptr;
+  Points motion_before = reference.velocity();
   for (Index step = 0; step < plan.steps; ++step) {
     const double* shape = reference.shape().data();
     const double* motion = reference.velocity().data();
     const Vec3<T> center = sheet_center(plan, sheet.x);
     Vec3<T> drift = center;
-    if constexpr (damped_control) drift = sheet_center(plan, velocity);
+    if constexpr (damped_control) {
+      for (Index i = 0; i < n; ++i) {
+        const Index user = 3 * plan.user_index[static_cast<std::size_t>(i)];
+        const double* then = motion_before.data() + user;
+        const double* now = motion + user;
+        const Vec3<T> change = velocity[i] - velocity_before[i];
+        told_velocity[i] = velocity[i] + scale(0.5, Vec3<T>{shift(then[0] - now[0], change.x),
+                                                            shift(then[1] - now[1], change.y),
+                                                            shift(then[2] - now[2], change.z)});
+        velocity_before[i] = velocity[i];
+      }
+      motion_before = reference.velocity();
+      drift = sheet_center(plan, told_velocity);
+    }
     advance_sheet(plan, step == 0, sheet, [&](Index i) NUNO_INLINE_LAMBDA {
       const Index user = plan.user_index[static_cast<std::size_t>(i)];
       const auto missing = [&](const double* of, const Vec3<T>& mean,
@@ -142,7 +161,7 @@ void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const She
       };
       Vec3<T> pull = control.gain * missing(shape, center, sheet.x[i]);
       if constexpr (damped_control) {
-        pull = pull + control.damping * missing(motion, drift, velocity[i]);
+        pull = pull + control.damping * missing(motion, drift, told_velocity[i]);
       }
       return scale(plan.relative_mass[static_cast<std::size_t>(user)], pull);
     });

@@ -1,5 +1,7 @@
 #include "pictures/drawing.h"
 
+#include <nuno/output.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -126,45 +128,18 @@ double text_width(std::string_view text, std::string_view style) {
 
 std::string xml_text(std::string_view text) {
   std::string result;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    std::size_t length = byte < 0x80   ? 1
-                         : byte < 0xc2 ? 0
-                         : byte < 0xe0 ? 2
-                         : byte < 0xf0 ? 3
-                         : byte < 0xf5 ? 4
-                                       : 0;
-    bool valid = length > 0 && i + length <= text.size();
-    for (std::size_t k = 1; valid && k < length; ++k) {
-      valid = (static_cast<unsigned char>(text[i + k]) & 0xc0) == 0x80;
-    }
-    // Overlong forms, surrogates, and code points that XML forbids.
-    if (valid && length == 3) {
-      const auto next = static_cast<unsigned char>(text[i + 1]);
-      valid = !(byte == 0xe0 && next < 0xa0) && !(byte == 0xed && next > 0x9f) &&
-              !(byte == 0xef && next == 0xbf && static_cast<unsigned char>(text[i + 2]) > 0xbd);
-    }
-    if (valid && length == 4) {
-      const auto next = static_cast<unsigned char>(text[i + 1]);
-      valid = !(byte == 0xf0 && next < 0x90) && !(byte == 0xf4 && next > 0x8f);
-    }
-    if (!valid) {
-      result += "\xef\xbf\xbd";
-      length = 1;
-    } else if (byte < ' ' || byte == 0x7f) {
-      result += ' ';
-    } else if (byte == '&') {
+  for (const char c : printable(std::string(text))) {
+    if (c == '&') {
       result += "&amp;";
-    } else if (byte == '<') {
+    } else if (c == '<') {
       result += "&lt;";
-    } else if (byte == '>') {
+    } else if (c == '>') {
       result += "&gt;";
-    } else if (byte == '"') {
+    } else if (c == '"') {
       result += "&quot;";
     } else {
-      result += text.substr(i, length);
+      result += c;
     }
-    i += length;
   }
   return result;
 }
@@ -276,66 +251,68 @@ void Drawing::begin_clip(const Box& box) {
 
 void Drawing::end_clip() { body_ += "</svg>\n"; }
 
-std::string Drawing::placed_labels() const {
+Drawing::Placement Drawing::placed(const Label& label, double distance, Vec way,
+                                   const std::vector<Box>& taken) const {
+  Placement result;
+  result.distance = distance;
+  result.way = way;
+  result.anchor = way.x > 0.3 ? Anchor::start : way.x < -0.3 ? Anchor::end : Anchor::middle;
+  result.at = {label.place.x + distance * way.x,
+               label.place.y + distance * way.y + 0.35 * font_size + 0.45 * font_size * way.y};
+  Box box = box_of_text(result.at, text_width(label.text, label.style), result.anchor);
+  const double slid = std::max(label.inside.left - box.left, 0.0) +
+                      std::min(label.inside.right() - box.right(), 0.0);
+  result.at.x += slid;
+  box.left += slid;
+  result.cost = 0.045 * (distance + std::abs(slid)) + (way.y > 0 ? 0.1 : 0) +
+                (std::abs(way.x) < 0.3 ? 0.1 : 0);
+  if (!is_inside(box, label.inside)) result.cost += 1000;
+  for (const Box& other : taken) {
+    if (overlap(box, other)) result.cost += 100;
+  }
+  const Box wide = {box.left - 3, box.top - 1, box.width + 6, box.height + 2};
+  for (const Obstacle& obstacle : obstacles_) {
+    if (obstacle.at.x > wide.left && obstacle.at.x < wide.right() && obstacle.at.y > wide.top &&
+        obstacle.at.y < wide.bottom()) {
+      result.cost += obstacle.cost;
+    }
+  }
+  return result;
+}
+
+Drawing::Placement Drawing::best_placement(const Label& label,
+                                           const std::vector<Box>& taken) const {
   constexpr std::array<double, 7> distances = {7, 12, 20, 30, 44, 62, 84};
   constexpr int directions = 16;
+  Placement best;
+  best.cost = std::numeric_limits<double>::infinity();
+  for (const double distance : distances) {
+    for (int i = 0; i < directions; ++i) {
+      const double angle = 2 * std::numbers::pi * i / directions;
+      const Placement candidate =
+          placed(label, distance, {std::cos(angle), -std::sin(angle)}, taken);
+      if (candidate.cost < best.cost) best = candidate;
+    }
+  }
+  return best;
+}
+
+std::string Drawing::placed_labels() const {
   std::string result;
   std::vector<Box> taken = texts_;
   for (const Label& label : labels_) {
-    const double width = text_width(label.text, label.style);
-    double best = std::numeric_limits<double>::infinity();
-    Vec at = label.place;
-    Anchor best_anchor = Anchor::middle;
-    double best_distance = 0;
-    Vec best_way;
-    for (const double distance : distances) {
-      for (int i = 0; i < directions; ++i) {
-        const double angle = 2 * std::numbers::pi * i / directions;
-        const Vec way = {std::cos(angle), -std::sin(angle)};
-        const Anchor anchor = way.x > 0.3    ? Anchor::start
-                              : way.x < -0.3 ? Anchor::end
-                                             : Anchor::middle;
-        Vec candidate = {
-            label.place.x + distance * way.x,
-            label.place.y + distance * way.y + 0.35 * font_size + 0.45 * font_size * way.y};
-        Box box = box_of_text(candidate, width, anchor);
-        const double slid = std::max(label.inside.left - box.left, 0.0) +
-                            std::min(label.inside.right() - box.right(), 0.0);
-        candidate.x += slid;
-        box.left += slid;
-        double cost = 0.045 * (distance + std::abs(slid)) + (way.y > 0 ? 0.1 : 0) +
-                      (std::abs(way.x) < 0.3 ? 0.1 : 0);
-        if (!is_inside(box, label.inside)) cost += 1000;
-        for (const Box& other : taken) {
-          if (overlap(box, other)) cost += 100;
-        }
-        const Box wide = {box.left - 3, box.top - 1, box.width + 6, box.height + 2};
-        for (const Obstacle& obstacle : obstacles_) {
-          if (obstacle.at.x > wide.left && obstacle.at.x < wide.right() &&
-              obstacle.at.y > wide.top && obstacle.at.y < wide.bottom()) {
-            cost += obstacle.cost;
-          }
-        }
-        if (cost < best) {
-          best = cost;
-          at = candidate;
-          best_anchor = anchor;
-          best_distance = distance;
-          best_way = way;
-        }
-      }
-    }
-    taken.push_back(box_of_text(at, width, best_anchor));
-    if (best_distance > 15) {
+    const Placement best = best_placement(label, taken);
+    taken.push_back(box_of_text(best.at, text_width(label.text, label.style), best.anchor));
+    if (best.distance > 15) {
       const std::array<Vec, 2> leader = {
-          Vec{label.place.x + 5 * best_way.x, label.place.y + 5 * best_way.y},
-          Vec{label.place.x + (best_distance - 3) * best_way.x,
-              label.place.y + (best_distance - 3) * best_way.y}};
+          Vec{label.place.x + 5 * best.way.x, label.place.y + 5 * best.way.y},
+          Vec{label.place.x + (best.distance - 3) * best.way.x,
+              label.place.y + (best.distance - 3) * best.way.y}};
       result += fmt::format("<polyline class=\"line hair\" points=\"{}\"/>\n", svg_points(leader));
     }
     result += fmt::format(
         "<text class=\"label {}\" x=\"{:.6g}\" y=\"{:.6g}\" text-anchor=\"{}\">{}</text>\n",
-        label.style, at.x, at.y, anchor_name(best_anchor), xml_text(label.text));
+        label.style, best.at.x, best.at.y, anchor_name(best.anchor), xml_text(label.text));
   }
   return result;
 }

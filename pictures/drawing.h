@@ -81,8 +81,20 @@ class Drawing {
     double cost;
   };
 
+  /// Where a label might stand, and how bad that would be.
+  struct Placement {
+    Vec at;
+    Anchor anchor = Anchor::middle;
+    double distance = 0;  ///< from the place that it belongs to [px]
+    Vec way;              ///< from there, of length 1
+    double cost = 0;
+  };
+
   void mind(Vec at, Weight weight);
   void mind_line(Vec from, Vec to, Weight weight);
+  Placement placed(const Label& label, double distance, Vec way,
+                   const std::vector<Box>& taken) const;
+  Placement best_placement(const Label& label, const std::vector<Box>& taken) const;
   std::string placed_labels() const;
 
   Vec size_;

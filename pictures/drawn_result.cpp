@@ -6,17 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
+#include "formats/compact_json.h"
+
 namespace nuno {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
-constexpr int deepest = 16;  // a result has 5 levels
 // A flight may leave the bounds of its scene.
 constexpr double largest_number = 1e3 * largest_scene_number;
 
@@ -27,10 +27,8 @@ struct Field {
   const Json& value;
 
   [[noreturn]] void refuse(const std::string& rule) const {
-    std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (text.size() > 60) text = text.substr(0, 57) + "...";
     throw InputError(
-        fmt::format("{}: {}: {} {}", path, pointer.empty() ? "/" : pointer, text, rule));
+        fmt::format("{}: {}: {} {}", path, pointer.empty() ? "/" : pointer, shown(value), rule));
   }
   Field child(const std::string& name) const {
     if (!value.is_object()) refuse("is not an object");
@@ -78,52 +76,31 @@ struct Field {
   }
   /// A shape of `particles` points of `rows` numbers; of any number of them if `particles` is 0.
   Points points(Index particles, Index rows) const {
-    list(2);
-    const auto count = static_cast<Index>(value.size());
+    if (!value.is_binary()) list(2);
+    const Points result = value.is_binary() ? points_of(value) : Points(rows, 0);
+    const Index count = result.cols();
+    if (count < 2) refuse("has not at least 2 items");
     if (particles > 0 && count != particles) {
       throw InputError(fmt::format("{}: {}: {} points are not {}, as many as in /target", path,
                                    pointer, count, particles));
     }
-    Points result(rows, count);
+    const auto item_of = [&](const Json& json, Index i) -> Field {
+      return {path, fmt::format("{}/{}", pointer, i), json};
+    };
+    if (result.rows() != rows) {
+      const Json point(std::vector<double>(result.col(0).begin(), result.col(0).end()));
+      item_of(point, 0).refuse(rows == 2 ? "is not a point [x, y]" : "is not a point [x, y, z]");
+    }
     for (Index i = 0; i < count; ++i) {
-      const Field point = item(static_cast<std::size_t>(i));
-      if (!point.value.is_array() || point.value.size() != static_cast<std::size_t>(rows)) {
-        point.refuse(rows == 2 ? "is not a point [x, y]" : "is not a point [x, y, z]");
-      }
       for (Index k = 0; k < rows; ++k) {
-        result(k, i) = point.item(static_cast<std::size_t>(k)).number();
+        if (std::abs(result(k, i)) <= largest_number) continue;
+        const Json coordinate = result(k, i);
+        (void)Field{path, fmt::format("{}/{}/{}", pointer, i, k), coordinate}.number();
       }
     }
     return result;
   }
 };
-
-Json read_json(const std::string& path) {
-  std::error_code ignored;
-  std::ifstream file(path, std::ios::binary);
-  // A directory opens, and then cannot be read.
-  if (!file || file.peek() == std::ifstream::traits_type::eof()) {
-    throw InputError(fmt::format("{}: /: cannot be read, or is empty", path));
-  }
-  bool too_deep = false;
-  const auto shallow = [&](int depth, Json::parse_event_t, Json&) {
-    too_deep = too_deep || depth > deepest;
-    return depth <= deepest;
-  };
-  Json json;
-  try {
-    json = Json::parse(file, shallow);
-  } catch (const Json::exception& error) {
-    const std::string what = error.what();
-    const auto colon = what.find("] ");
-    throw InputError(fmt::format("{}: /: not JSON: {}", path,
-                                 colon == std::string::npos ? what : what.substr(colon + 2)));
-  }
-  if (too_deep) {
-    throw InputError(fmt::format("{}: /: nests deeper than {} levels", path, deepest));
-  }
-  return json;
-}
 
 /// A picture is at least as large as its target: one that is too small leaves no room for ticks.
 void require_extent(const std::string& path, const Points& target) {
@@ -165,15 +142,16 @@ Edges edges_of(const Field& root, bool is_sheet, Index particles) {
 
 }  // namespace
 
-bool is_scene_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string start(256, '\0');
-  file.read(start.data(), static_cast<std::streamsize>(start.size()));
-  return start.find("\"nuno_scene\"") != std::string::npos;
+bool is_scene(const std::string& text, const std::string& path) {
+  return parse_compact(text, path, {.wanted = {"nuno_scene"}}).contains("nuno_scene");
 }
 
-figures::Flight read_result(const std::string& path) {
-  const Json json = read_json(path);
+figures::Flight parse_result(const std::string& text, const std::string& path) {
+  static const JsonForm form = {
+      .points = {{"/target", 0}, {"/final", 0}, {"/frames/positions", 1}},
+      .wanted = {"nuno_result", "scene", "backend", "alpha", "kind", "size", "cloth_length",
+                 "error", "faces", "target", "final", "frames"}};
+  const Json json = parse_compact(text, path, form);
   const Field root{path, "", json};
   if (const Field version = root.child("nuno_result"); version.value != 1) {
     version.refuse("is not 1");

@@ -158,8 +158,8 @@ std::string table(const std::vector<ReportScene>& scenes) {
          "the particles.</p>\n";
 }
 
-std::string section(const ReportScene& scene, std::size_t number) {
-  const Comparison& comparison = scene.comparison;
+/// The gains of the flights that a scene's section can show, to choose from.
+std::string gain_choices(const ReportScene& scene, std::size_t number) {
   std::string gains;
   for (std::size_t i = 0; i < scene.choices.size(); ++i) {
     const ReportChoice& choice = scene.choices[i];
@@ -168,13 +168,23 @@ std::string section(const ReportScene& scene, std::size_t number) {
                     choice.is_pareto ? " class=\"pareto\"" : "", number, i,
                     i == 0 ? " checked" : "", xml_text(choice.label));
   }
-  std::string readings;
+  return gains;
+}
+
+/// A row for each engine, filled in on the page.
+std::string readings(const Comparison& comparison) {
+  std::string rows;
   for (std::size_t i = 0; i < comparison.rows.size(); ++i) {
-    readings += fmt::format(
+    rows += fmt::format(
         "<tr><td class=\"engine\">{}{}</td><td data-part=\"reading-{}-0\"></td>"
         "<td data-part=\"reading-{}-1\"></td><td data-part=\"reading-{}-2\"></td></tr>\n",
         key(i), engine_name(comparison.rows[i].backend), i, i, i);
   }
+  return rows;
+}
+
+std::string section(const ReportScene& scene, std::size_t number) {
+  const Comparison& comparison = scene.comparison;
   return fmt::format(
       R"(<section class="scene" id="scene-{number}" aria-label="{name}">
 <h2>{name}</h2>
@@ -227,9 +237,10 @@ L</small></th><th>effort<small>{unit}</small></th></tr></thead>
       fmt::arg("length", shown(comparison.cloth_length)), fmt::arg("key_a", key(0)),
       fmt::arg("key_b", key(1)), fmt::arg("engine_a", engine_name(comparison.rows[0].backend)),
       fmt::arg("engine_b", engine_name(comparison.rows[1].backend)),
-      fmt::arg("figure", gain_figure(scene, 440, true)), fmt::arg("gains", gains),
+      fmt::arg("figure", gain_figure(scene, 440, true)),
+      fmt::arg("gains", gain_choices(scene, number)),
       fmt::arg("pareto_front", pareto_figure(scene, 440, true)),
-      fmt::arg("unit", xml_text(scene.effort_unit)), fmt::arg("readings", readings));
+      fmt::arg("unit", xml_text(scene.effort_unit)), fmt::arg("readings", readings(comparison)));
 }
 
 /// What an engine's flights of a comparison paid for their errors.

@@ -13,6 +13,7 @@
 
 #include <nuno/conditioning.h>
 #include <nuno/progress.h>
+#include "formats/result_json.h"
 #include "studio/studio_rollout.h"
 #include "studio/throw.h"
 
@@ -35,9 +36,10 @@ void append(std::string& text, const Points& points) {
   text += ']';
 }
 
-void append(std::string& text, const std::vector<Points>& shapes) {
+void append(std::string& text, const std::vector<Points>& shapes, const Turn& turn) {
   text += '[';
   for (std::size_t i = 0; i < shapes.size(); ++i) {
+    turn.check();
     if (i > 0) text += ',';
     append(text, shapes[i]);
   }
@@ -45,60 +47,35 @@ void append(std::string& text, const std::vector<Points>& shapes) {
 }
 
 Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
-  Json history = Json::array();
-  for (const Evaluation& evaluation : summary.history) {
-    if (!std::isfinite(evaluation.error)) continue;
-    history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
-  }
-  return {{"optimizer", optimizer},
-          {"status", summary.status == OptimizeStatus::converged ? "converged" : "budget"},
-          {"alpha", summary.gain},
-          {"evaluations", summary.evaluations},
-          {"seconds", summary.seconds},
-          {"reason", summary.reason},
-          {"history", history}};
+  Json result = search_head(optimizer, summary);
+  result["alpha"] = summary.gain;
+  result["reason"] = summary.reason;
+  result["history"] = history_of(summary);
+  return result;
 }
 
 Json to_json(const RefineSummary& refinement) {
   Points at_arrival = Points::Zero(2, refinement.flight.final.cols());
   for (const Points& offset : refinement.reference_correction) at_arrival += offset;
-  Json result = {{"status", refinement.converged ? "converged" : "nearest"},
-                 {"largest_offset", at_arrival.colwise().norm().maxCoeff()},
-                 {"rollouts", refinement.rollouts},
-                 {"jacobians", refinement.jacobians},
-                 {"seconds", refinement.seconds},
-                 {"reason", refinement.reason}};
+  Json result = refinement_head(refinement);
+  result["largest_offset"] = at_arrival.colwise().norm().maxCoeff();
   if (std::isfinite(refinement.error_before)) result["error_before"] = refinement.error_before;
   return result;
 }
 
 /// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.
-std::string drawable(const Throw& done, const std::string& optimizer, const Flight& frames,
+std::string drawable(const Throw& done, const Request& request, const Flight& frames,
                      Clock::time_point start) {
   const Backend& backend = *done.backend;
   const Rollout& flight = done.flight;
   const Problem& problem = backend.problem();
-  Json head = {{"scene", done.file.scene.name},
-               {"backend", backend.name()},
-               {"status", "ok"},
-               {"alpha", flight.gains.rest},
-               {"time_step", backend.time_step()},
-               {"steps", backend.steps()},
-               {"cloth_length", problem.cloth().size},
-               {"target_scale", problem.target_scale},
-               {"error",
-                {{"mean", flight.error.mean},
-                 {"max", flight.error.max},
-                 {"centroid", flight.error.centroid},
-                 {"relative", flight.error.mean / problem.cloth().size}}},
-               {"control_effort", flight.control_effort},
-               {"effort_unit", effort_unit(problem)},
-               {"max_strain", flight.max_strain}};
+  Json head = result_head(done.file.scene.name, backend, flight);
+  head["effort_unit"] = effort_unit(problem);
   if (done.found) {
     OptimizeSummary shown = *done.found;
     shown.history.insert(shown.history.end(), done.between.begin(), done.between.end());
     std::ranges::sort(shown.history, {}, &Evaluation::gain);
-    head["optimization"] = to_json(shown, optimizer);
+    head["optimization"] = to_json(shown, request.options.optimizer);
   }
   if (done.refined) head["refinement"] = to_json(*done.refined);
   std::string text = dump(head);
@@ -110,9 +87,9 @@ std::string drawable(const Throw& done, const std::string& optimizer, const Flig
   text += ",\"final\":";
   append(text, flight.final);
   text += ",\"frames\":{\"times\":" + dump(frames.times) + ",\"positions\":";
-  append(text, frames.positions);
+  append(text, frames.positions, request.turn);
   text += ",\"forces\":";
-  append(text, frames.forces);
+  append(text, frames.forces, request.turn);
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   fmt::format_to(std::back_inserter(text), "}},\"seconds\":{:.6g}}}", seconds);
   return text;
@@ -125,9 +102,9 @@ Answer throw_answer(const Request& request, std::optional<double> alpha) {
   if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
   Flight frames;
   if (options.frames > 0) {
-    frames = fly(*done.backend, done.flight.gains, options.frames, options.after, request.turn);
+    frames = fly(*done.backend, done.flight.gains, options.frames, options.after);
   }
-  return {.body = drawable(done, options.optimizer, frames, start)};
+  return {.body = drawable(done, request, frames, start)};
 }
 
 /// How many gains a pareto-front tries: fewer of a scene whose rollouts take long.
@@ -176,10 +153,8 @@ Answer pareto_front_answer(const Request& request) {
   const SceneFile file = read_scene(request);
   const auto backend = make_backend(request.options.backend, file);
   require_quick(file, *backend, request.options);
-  request.turn.check();
   Json points = Json::array();
-  for (const ParetoPoint& point :
-       pareto_front(*backend, gains_of_pareto_front(*backend), [&] { request.turn.check(); })) {
+  for (const ParetoPoint& point : pareto_front(*backend, gains_of_pareto_front(*backend))) {
     points.push_back(
         {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
   }

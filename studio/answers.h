@@ -4,6 +4,7 @@
 #include <nuno/rollout.h>
 
 #include <string>
+#include <string_view>
 
 #include <nuno/engines.h>
 #include "studio/request.h"
@@ -15,7 +16,8 @@ struct Answer {
   int status = 200;  ///< of HTTP
   std::string type = "application/json";
   std::string body = {};
-  std::string file_name = {};  ///< of a download; empty: none
+  std::string file_name = {};   ///< of a download; empty: none
+  std::string_view allow = {};  ///< methods that are taken, with 405
 };
 
 /// {"error": message}
@@ -24,7 +26,7 @@ Answer refusal(int status, const std::string& message);
 /// The refusal of a scene whose flight diverged.
 Answer diverged_answer(const SceneFile& file, const Backend& backend, const Rollout& flight);
 
-// What the page shows and draws, see API.md. They throw InputError and Cancelled.
+// What the page shows and draws, see API.md. They throw InputError and Stopped.
 Answer about_answer(const Request& request);
 Answer progress_answer(const Request& request);
 Answer scene_answer(const Request& request);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <new>
-#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -35,58 +35,79 @@ const std::array<Route, 9> routes = {{
     {"POST", "/api/report", {"page"}, report_answer},
 }};
 
-/// Ends a request's turn, and the line that told its progress, however its work ends.
-class AtWork {
- public:
-  AtWork(Turns& turns, const Request& request) : turns_(turns), request_(request) {}
+const Route* find_route(const std::string& path) {
+  const auto route = std::ranges::find(routes, path, &Route::path);
+  return route == routes.end() ? nullptr : &*route;
+}
+
+/// What `make` answers, or the refusal for what it throws.
+template <typename Make>
+Answer answer_or_refusal(const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    return refusal(400, error.what());
+  } catch (const OutputError& error) {
+    return refusal(503, error.what());
+  } catch (const Stopped&) {
+    return refusal(409, "a newer request of this page took its place");
+  } catch (const std::bad_alloc&) {
+    return refusal(413, "the scene needs more memory than there is");
+  }
+}
+
+/// A request that works, and the end of its turn, and of the line that told its progress, however
+/// the work ends.
+struct AtWork {
+  Turns& turns;
+  Request request;
+
   ~AtWork() {
-    turns_.end(request_.options.page, request_.turn);
+    turns.forget(request.options.page, request.turn);
     clear_progress();
   }
-  AtWork(const AtWork&) = delete;
-  AtWork& operator=(const AtWork&) = delete;
-
- private:
-  Turns& turns_;
-  const Request& request_;
 };
 
 }  // namespace
 
 Answer Api::get(const std::string& path, const Parameters& parameters) {
-  return answer("GET", path, parameters, "");
+  const Route* const route = find_route(path);
+  if (!route) return refusal(404, "there is no such page");
+  if (route->method != "GET") {
+    Answer answer = refusal(405, path + ": takes POST with a scene");
+    answer.allow = "POST";
+    return answer;
+  }
+  return answer_or_refusal([&] {
+    const Options options = read_options(parameters, route->options);
+    return route->answer({{}, options, turns_.running(options.page)});
+  });
 }
 
-Answer Api::post(const std::string& path, const Parameters& parameters, std::string body) {
-  return answer("POST", path, parameters, std::move(body));
-}
-
-Answer Api::answer(std::string_view method, const std::string& path, const Parameters& parameters,
-                   std::string body) {
-  const auto route = std::ranges::find(routes, path, &Route::path);
-  if (route == routes.end()) return refusal(404, "there is no such page");
-  const bool works = route->method == "POST";
-  if (route->method != method) {
-    return refusal(405, path + (works ? ": takes POST with a scene" : ": takes GET"));
+std::variant<Answer, Work> Api::post(const std::string& path, const Parameters& parameters,
+                                     std::string body) {
+  const Route* const route = find_route(path);
+  if (!route) return refusal(404, "there is no such page");
+  if (route->method != "POST") {
+    Answer answer = refusal(405, path + ": takes GET");
+    answer.allow = "GET, HEAD";
+    return answer;
   }
-  Request request;
-  request.body = std::move(body);
-  std::optional<AtWork> at_work;
-  if (works) at_work.emplace(turns_, request);
-  try {
-    request.options = read_options(parameters, route->options);
-    const std::string& page = request.options.page;
-    request.turn = works ? turns_.begin(page) : turns_.running(page);
-    return route->answer(request);
-  } catch (const InputError& error) {
-    return refusal(400, error.what());
-  } catch (const OutputError& error) {
-    return refusal(503, error.what());
-  } catch (const Cancelled&) {
-    return refusal(409, "a newer request of this page took its place");
-  } catch (const std::bad_alloc&) {
-    return refusal(413, "the scene needs more memory than there is");
-  }
+  std::shared_ptr<AtWork> work;
+  const Answer refused = answer_or_refusal([&]() -> Answer {
+    const Options options = read_options(parameters, route->options);
+    Request request{std::move(body), options, turns_.begin(options.page)};
+    work.reset(new AtWork{turns_, std::move(request)});
+    return {};
+  });
+  if (!work) return refused;
+  return Work{[route, work] {
+                return answer_or_refusal([&] {
+                  work->request.turn.check();
+                  return route->answer(work->request);
+                });
+              },
+              work->request.turn};
 }
 
 }  // namespace nuno::studio

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
-#include <string_view>
+#include <variant>
 
 #include "studio/answers.h"
 #include "studio/cancellation.h"
@@ -9,18 +10,25 @@
 
 namespace nuno::studio {
 
+/// What takes its time: to be run once, by any thread, or to be thrown away.
+struct Work {
+  std::function<Answer()> run;
+  Turn turn;  ///< ends it
+};
+
 /// What the page asks the program, see API.md. Used by any number of threads.
 class Api {
  public:
   /// Answers everything, with a refusal where it must. What it throws is the machine's: no memory
   /// for the answer, no thread.
   Answer get(const std::string& path, const Parameters& parameters);
-  Answer post(const std::string& path, const Parameters& parameters, std::string body);
+
+  /// A refusal at once, or the work that answers; it takes its page's turn here. This object must
+  /// outlive it.
+  std::variant<Answer, Work> post(const std::string& path, const Parameters& parameters,
+                                  std::string body);
 
  private:
-  Answer answer(std::string_view method, const std::string& path, const Parameters& parameters,
-                std::string body);
-
   Turns turns_;
 };
 

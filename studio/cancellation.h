@@ -1,25 +1,30 @@
 #pragma once
 
-#include <nuno/optimize.h>
+#include <nuno/problem.h>
 
 #include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <stop_token>
 #include <string>
 
 namespace nuno::studio {
 
-/// A newer request of the same page took this one's place.
-struct Cancelled {};
-
-/// One request's permission to work, which a newer request of the same page takes away.
+/// One request's permission to work, which a newer request of the same page takes away, and a
+/// client that leaves.
 class Turn {
  public:
-  /// Throws Cancelled if the turn is over.
+  /// Throws Stopped if the turn is over.
   void check() const {
-    if (state_ && state_->over) throw Cancelled();
+    if (is_over()) throw Stopped();
   }
+  bool is_over() const { return state_ && state_->stop.stop_requested(); }
+  void end() const {
+    if (state_) state_->stop.request_stop();
+  }
+  /// For the problem that is worked on.
+  std::stop_token token() const { return state_ ? state_->stop.get_token() : std::stop_token(); }
   /// How much of the work is done, 0 … 1, for who asks meanwhile.
   void report(double share) const {
     if (state_) state_->progress = share;
@@ -29,7 +34,7 @@ class Turn {
  private:
   friend class Turns;
   struct State {
-    std::atomic<bool> over = false;
+    std::stop_source stop;
     std::atomic<double> progress = 0;
   };
   std::shared_ptr<State> state_;
@@ -40,7 +45,7 @@ class Turns {
  public:
   /// Ends the turn that `page` has and begins a new one; an empty `page` never ends another's.
   Turn begin(const std::string& page);
-  void end(const std::string& page, const Turn& turn);
+  void forget(const std::string& page, const Turn& turn);
   /// The turn that `page` has; without one, a turn that nobody ends.
   Turn running(const std::string& page);
 
@@ -48,12 +53,5 @@ class Turns {
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Turn::State>> running_;
 };
-
-/// What one rollout takes, in particle-steps.
-double work_of(const Backend& backend);
-
-/// The objective of `backend`, in portions of a fraction of a second; between them it throws
-/// Cancelled if the turn is over. The errors are the same to the bit.
-Objective cancellable(const Backend& backend, const Turn& turn);
 
 }  // namespace nuno::studio

@@ -80,10 +80,7 @@ Answer report_answer(const Request& request) {
   const auto box2d = make_backend("box2d", file);
   require_quick(file, *native, request.options);
   require_quick(file, *box2d, request.options);
-  const Comparison comparison = compare_engines(
-      file.scene.name, *native, *box2d,
-      {.objective_of = [&](const Backend& backend) { return cancellable(backend, request.turn); },
-       .before_rollout = [&] { request.turn.check(); }});
+  const Comparison comparison = compare_engines(file.scene.name, *native, *box2d);
   if (comparison.divergence) {
     const auto& [backend, flight] = *comparison.divergence;
     return diverged_answer(file, backend == "native" ? *native : *box2d, flight);

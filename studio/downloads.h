@@ -5,7 +5,7 @@
 
 namespace nuno::studio {
 
-// The files that the page saves. They throw InputError, OutputError and Cancelled.
+// The files that the page saves. They throw InputError, OutputError and Stopped.
 
 /// What --out writes: simulate's result where a gain is given, else optimize's.
 Answer result_answer(const Request& request);

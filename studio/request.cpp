@@ -96,7 +96,14 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
 
 SceneFile read_scene(const Request& request) {
   // The name under which the page saves it.
-  return make_scene_file("scene.json", parse_scene(request.body, "scene.json"));
+  SceneFile file = make_scene_file("scene.json", parse_scene(request.body, "scene.json"));
+  file.problem.stop = request.turn.token();
+  return file;
+}
+
+double work_of(const Backend& backend) {
+  return static_cast<double>(backend.steps()) *
+         static_cast<double>(backend.problem().cloth().particles());
 }
 
 void require_quick(const SceneFile& file, const Backend& backend, const Options& options) {

@@ -37,8 +37,11 @@ struct Request {
   Turn turn;  ///< of its own where there is work to do; else the one that its page has
 };
 
-/// Throws InputError for what is no scene.
+/// The scene, whose work ends with the request's turn. Throws InputError for what is no scene.
 SceneFile read_scene(const Request& request);
+
+/// What one rollout takes, in particle-steps.
+double work_of(const Backend& backend);
 
 // A page waits for its answer: what takes longer than a few minutes, or more memory than a browser
 // has, is for the command line.

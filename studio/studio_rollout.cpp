@@ -9,14 +9,12 @@
 
 namespace nuno::studio {
 
-Flight fly(const Backend& backend, const Gains& gains, Index frames, double after,
-           const Turn& turn) {
+Flight fly(const Backend& backend, const Gains& gains, Index frames, double after) {
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
   const ShapeControl control(problem, gains);
   const Index steps = backend.steps();
   const Index last = steps + static_cast<Index>(std::floor(after / h));
-  constexpr Index steps_between_checks = 256;
 
   ReferenceMotion reference(problem, h);
   const auto cloth = backend.start(launch(backend));
@@ -24,7 +22,7 @@ Flight fly(const Backend& backend, const Gains& gains, Index frames, double afte
   Flight result;
   Index frame = 0;
   for (Index n = 0; n <= last; ++n) {
-    if (n % steps_between_checks == 0) turn.check();
+    problem.stop_where_asked();
     if (!cloth->positions().allFinite()) break;
     if (control.pulls() && n <= steps) {
       control.pull(reference, cloth->positions(), cloth->velocities(), forces);

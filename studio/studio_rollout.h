@@ -4,8 +4,6 @@
 
 #include <vector>
 
-#include "studio/cancellation.h"
-
 namespace nuno::studio {
 
 /// A flight to be looked at: frames with the control forces, and how it goes on after arrival.
@@ -17,7 +15,6 @@ struct Flight {
 
 /// The flight that `rollout` measures, at `frames` equal intervals until arrival, and for `after`
 /// seconds more in which nothing controls the cloth. Ends early where it diverges.
-Flight fly(const Backend& backend, const Gains& gains, Index frames, double after,
-           const Turn& turn);
+Flight fly(const Backend& backend, const Gains& gains, Index frames, double after);
 
 }  // namespace nuno::studio

@@ -40,20 +40,19 @@ std::vector<Evaluation> between(const std::vector<Evaluation>& searched,
 
 Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrames frames) {
   const Options& options = request.options;
-  const Turn& turn = request.turn;
   Throw result;
   result.file = read_scene(request);
   SceneFile& file = result.file;
   if (frames == KeptFrames::of_scene) require_few_frames_in_file(file);
   const auto made_ready = [&] {
-    return alpha ? make_backend_for_gain(options.backend, file, *alpha)
+    return alpha ? make_backend_for_gain(options.backend, file, *alpha, "alpha")
                  : make_backend(options.backend, file);
   };
   result.backend = made_ready();
   require_quick(file, *result.backend, options);
   double gain = alpha.value_or(0);
   if (!alpha) {
-    const Objective errors = cancellable(*result.backend, turn);
+    const Objective errors = objective(*result.backend);
     result.found = search(options, errors);
     gain = result.found->gain;
     // Where they are cheap.
@@ -61,9 +60,8 @@ Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrame
       result.between = between(result.found->history, errors);
     }
   }
-  turn.check();
   if (options.refine) {
-    RefineSummary refined = refine_on(options.backend, file, {}, [&] { turn.check(); });
+    RefineSummary refined = refine_on(options.backend, file);
     if (refined.flight.error.mean < rollout(*result.backend, gain).error.mean) {
       gain = refined.flight.gains.rest;
       file.problem.reference_correction = refined.reference_correction;

@@ -27,7 +27,7 @@ struct Throw {
 enum class KeptFrames { none, of_scene };
 
 /// The throw at the gain `alpha`, or at the best one where there is none: as `nuno simulate` and
-/// `nuno optimize` do it, with their functions and options. Throws InputError and Cancelled.
+/// `nuno optimize` do it, with their functions and options. Throws InputError and Stopped.
 Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrames frames);
 
 }  // namespace nuno::studio

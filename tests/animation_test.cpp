@@ -83,6 +83,18 @@ TEST(Animation, AsPc2IsLittleEndianWithAllItsFrames) {
   EXPECT_TRUE(reader.at_end());
 }
 
+TEST(Animation, AsACacheHasTheVerticesOfTheMeshsFileWithTheirCopies) {
+  const TemporaryFolder folder;
+  Animation animation = two_triangles();
+  animation.mesh.file_vertices = {0, 1, 2, 0, 2, 3};
+  write_animation(folder / "a.pc2", animation);
+  Reader reader(folder / "a.pc2", 16, false);
+  EXPECT_EQ(reader.word(), 6u);
+  for (int k = 0; k < 3; ++k) reader.word();
+  const Points& first = animation.positions.front();
+  reader.expect({first(Eigen::all, {0, 1, 2, 0, 2, 3})});
+}
+
 TEST(Animation, AsMddIsBigEndianWithTheTimesOfItsFrames) {
   const TemporaryFolder folder;
   const Animation animation = two_triangles();

@@ -14,8 +14,9 @@
 #include <variant>
 
 #include "engines.h"
+#include "own_engine.h"
 #include "scene_library.h"
-#include "thrown_sheet.h"
+#include "sheets.h"
 
 namespace nuno {
 namespace {
@@ -23,6 +24,12 @@ namespace {
 using std::numbers::pi;
 
 using ClothScene = std::variant<ChainScene, SheetScene>;
+
+const Engine own_engine = {"own",
+                           [](const Problem& problem, std::optional<double> time_step) {
+                             return own::make_backend(with_time_step(problem, time_step));
+                           },
+                           1e-11, false};
 
 /// What a scene asks, whatever its cloth's form.
 Scene& common(ClothScene& scene) {
@@ -396,7 +403,8 @@ TEST_P(EveryEngine, ScalesItsAnswerWithLengthTimeAndMass) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Engines, EveryEngine,
-                         testing::Values(Pair{"chain_on_native", &native_engine, false},
+                         testing::Values(Pair{"chain_on_an_own_engine", &own_engine, false},
+                                         Pair{"chain_on_native", &native_engine, false},
                                          Pair{"chain_on_box2d_weld", &box2d_weld_engine, false},
                                          Pair{"chain_on_box2d_pair", &box2d_pair_engine, false},
                                          Pair{"sheet_on_native", &native_engine, true},

@@ -64,10 +64,8 @@ TEST(Engines, HoldTheFramesOfAFlightAndOfWhatStandsAroundIt) {
 
 TEST(Engines, RefineOnTheEngineThatIsAskedFor) {
   SceneFile file = short_throw();
-  int rollouts = 0;
-  const RefineSummary refined =
-      refine_on("box2d", file, {.tolerance = 1e-4, .rounds = 6}, [&] { ++rollouts; });
-  EXPECT_GT(rollouts, 2);
+  const RefineSummary refined = refine_on("box2d", file, {.tolerance = 1e-4, .rounds = 6});
+  EXPECT_GT(refined.rollouts, 2);
   Problem corrected = file.problem;
   corrected.reference_correction = refined.reference_correction;
   const auto box2d = backend_maker("box2d", file)(corrected);

@@ -112,10 +112,21 @@ double distance(const std::array<double, 2>& a, const std::array<double, 2>& b) 
   return std::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
-  const Outcome made = nuno({"figures", "--out", in_folder("figures")});
+/// The paper's figures, made anew for every test.
+class PaperFigures : public Pictures {
+ protected:
+  void SetUp() override { made_ = nuno({"figures", "--out", in_folder("figures")}); }
+
+  std::string figure(int n) const {
+    return read_text(in_folder("figures") / ("figure-" + std::to_string(n) + ".svg"));
+  }
+
+  Outcome made_;
+};
+
+TEST_F(PaperFigures, AreWellFormedLightAndDarkAndPictures) {
   if (is_installed("rsvg-convert")) {
-    EXPECT_EQ(made.status, 0) << made.err;
+    EXPECT_EQ(made_.status, 0) << made_.err;
   }
   for (const std::string name : {"figure-5", "figure-6", "figure-7", "figure-8"}) {
     const std::string svg = read_text(in_folder("figures") / (name + ".svg"));
@@ -129,15 +140,26 @@ TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
     EXPECT_EQ(static_cast<unsigned char>(png[18]) * 256 + static_cast<unsigned char>(png[19]),
               1600);
   }
-  const auto figure = [&](int n) {
-    return read_text(in_folder("figures") / ("figure-" + std::to_string(n) + ".svg"));
-  };
+}
+
+TEST_F(PaperFigures, HaveUnitsAndNameWhatTheyShow) {
   for (const std::string text :
        {"gain α [N/m]", "error at arrival [% of L]", "launch only", "local minimum",
         // The paper's first valley.
         "the descent ends in the first valley: α = 0.0181 N/m, 2.17 %"}) {
     EXPECT_NE(figure(5).find(text), std::string::npos) << text;
   }
+  for (const int n : {6, 7, 8}) {
+    for (const std::string text : {"x [m]", "y [m]", "initial", "target", "final", "centroid"}) {
+      EXPECT_NE(figure(n).find(text), std::string::npos) << n << ": " << text;
+    }
+  }
+  EXPECT_NE(figure(6).find("32 particles, α = 0 N/m"), std::string::npos);
+  EXPECT_NE(figure(7).find("32 particles, α = 0.0181 N/m"), std::string::npos);
+  EXPECT_NE(figure(8).find("64 particles"), std::string::npos);
+}
+
+TEST_F(PaperFigures, RingTheBestGainThatASearchOfItsOwnFinds) {
   // The best point is the one that a search of its own finds.
   const fs::path found = in_folder("best.json");
   ASSERT_EQ(nuno({"optimize", scene("s-curve-32"), "--out", found}).status, 0);
@@ -154,8 +176,10 @@ TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
   ASSERT_NE(figure(5).find(ring), std::string::npos);
   const std::vector<double> ringed = numbers(figure(5).substr(figure(5).find(ring)));
   EXPECT_LT(distance(lowest, {ringed[0], ringed[1]}), 4) << "a few of the scan's steps";
+}
 
-  // Flights are drawn to scale: an error measured on the paper is the one in the text.
+TEST_F(PaperFigures, DrawFlightsToScale) {
+  // An error measured on the paper is the one in the text.
   for (const auto& [n, percent] : std::vector<std::pair<int, double>>{{6, 8.85}, {7, 2.17}}) {
     const std::vector<Places> targets = polylines(figure(n), "band");
     const std::vector<Places> finals = polylines(figure(n), "a  thick");
@@ -170,14 +194,6 @@ TEST_F(Pictures, FiguresFiveToEightHaveUnitsAndNameWhatTheyShow) {
       EXPECT_NEAR(100 * sum / 32 / length, percent, 0.02) << "hundredths of a pixel";
     }
   }
-  for (const int n : {6, 7, 8}) {
-    for (const std::string text : {"x [m]", "y [m]", "initial", "target", "final", "centroid"}) {
-      EXPECT_NE(figure(n).find(text), std::string::npos) << n << ": " << text;
-    }
-  }
-  EXPECT_NE(figure(6).find("32 particles, α = 0 N/m"), std::string::npos);
-  EXPECT_NE(figure(7).find("32 particles, α = 0.0181 N/m"), std::string::npos);
-  EXPECT_NE(figure(8).find("64 particles"), std::string::npos);
 }
 
 TEST_F(Pictures, AStillAndAMovingSvgOfSeveralResultsAreWellFormed) {

@@ -42,7 +42,7 @@ std::vector<Points> flight(const Points& start, const std::vector<double>& times
   for (const double t : times) {
     const Eigen::Matrix3d turn =
         Eigen::AngleAxisd(2 * t, Eigen::Vector3d(1, 0.3, -0.2).normalized()).toRotationMatrix();
-    frames.emplace_back((turn * start).colwise() + Eigen::Vector3d(1000 + t, -200 * t, 3));
+    frames.emplace_back((turn * start).colwise() + Eigen::Vector3d(1000.1 + t, -200 * t, 3));
   }
   return frames;
 }

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "thrown_sheet.h"
+#include "sheets.h"
 
 namespace nuno {
 namespace {
@@ -289,8 +289,6 @@ TEST(NativeSheet, LosesNoEnergyWithoutDamping) {
 }
 
 TEST(NativeSheet, IsOfSecondOrder) {
-  // Undamped: the velocity that control is told lags half a step, so that damping is of first order
-  // in every engine.
   for (const double times : {0.0, 1.0, 10.0}) {
     SheetScene scene = throw_scene(false);
     scene.damping_ratio = 0;

@@ -5,12 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "pictures/drawn_result.h"
 #include "pictures/flight_figure.h"
 #include "pictures/summary.h"
-#include "temporary_folder.h"
 
 namespace nuno::figures {
 namespace {
@@ -122,16 +120,16 @@ TEST(Stroke, GoesOverEveryEdgeAndNoOther) {
 }
 
 TEST(ReadResult, NamesAFaceOfAVertexThatIsNotThere) {
-  const TemporaryFolder folder;
-  const std::string path = (folder / "sheet.json").string();
+  const std::string path = "sheet.json";
   const auto complaint = [&](const std::string& corner) -> std::string {
-    std::ofstream(path) << R"({"nuno_result": 1, "kind": "sheet", "scene": "s", "backend": "native",
+    const std::string text =
+        R"({"nuno_result": 1, "kind": "sheet", "scene": "s", "backend": "native",
       "alpha": 1, "size": 1, "error": {"mean": 0, "max": 0}, "target": [[0,0,0],[1,0,0],[0,0,1]],
       "final": [[0,0,0],[1,0,0],[0,0,1]], "faces": [[0, 1, )" +
-                               corner + R"(]], "frames": {"times": [0, 1],
+        corner + R"(]], "frames": {"times": [0, 1],
       "positions": [[[0,0,0],[1,0,0],[0,0,1]], [[0,0,0],[1,0,0],[0,0,1]]]}})";
     try {
-      EXPECT_EQ(read_result(path).positions.size(), 2u);
+      EXPECT_EQ(parse_result(text, path).positions.size(), 2u);
     } catch (const InputError& error) {
       return error.what();
     }

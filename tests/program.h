@@ -93,6 +93,18 @@ class Process {
 
   void send(int signal) const { kill(id_, signal); }
 
+  /// Until it has said that the signal does not kill it, or has ended.
+  void wait_until_it_catches(int signal) const {
+    for (int i = 0; i < 10'000; ++i) {
+      std::ifstream status("/proc/" + std::to_string(id_) + "/status");
+      std::string line;
+      while (std::getline(status, line) && !line.starts_with("SigCgt:")) {
+      }
+      if (line.empty() || (std::stoull(line.substr(7), nullptr, 16) >> (signal - 1) & 1)) return;
+      std::this_thread::sleep_for(1ms);
+    }
+  }
+
   /// Exit status, or minus the signal. A program that hangs is killed after two minutes.
   int wait() const {
     const auto deadline = std::chrono::steady_clock::now() + 120s;

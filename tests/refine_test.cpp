@@ -18,9 +18,6 @@
 namespace nuno {
 namespace {
 
-std::unique_ptr<Backend> on_native(const Problem& problem) { return native::make_backend(problem); }
-std::unique_ptr<Backend> on_box2d(const Problem& problem) { return box2d::make_backend(problem); }
-
 /// A figure throw under the damped, moving reference.
 Problem morph_problem(std::size_t which) {
   ChainScene scene = scene_library::figure_throws()[which];
@@ -42,7 +39,9 @@ Problem reachable(Problem problem) {
 }
 
 /// The library's scene at the gain of refining.
-double tracking_gain_of(const Problem& problem) { return tracking_gain(*on_native(problem)); }
+double tracking_gain_of(const Problem& problem) {
+  return tracking_gain(*native::make_backend(problem));
+}
 
 /// One waved shape for each of correction_powers, none like another.
 CorrectionDirections one_for_each_power(Index particles) {
@@ -67,7 +66,7 @@ TEST(RolloutJacobian, IsTheDerivativeByCentralDifferences) {
       problem.reference_correction.assign(correction_powers.size(), Points::Zero(2, 32));
       const double gain = 0.3;
       const CorrectionDirections directions = one_for_each_power(32);
-      const RolloutJacobian jacobian = on_native(problem)->jacobian(gain, directions);
+      const RolloutJacobian jacobian = native::make_backend(problem)->jacobian(gain, directions);
       for (std::size_t power = 0; power < correction_powers.size(); ++power) {
         const auto column = static_cast<Index>(power);
         const double d = 2e-6;
@@ -78,7 +77,7 @@ TEST(RolloutJacobian, IsTheDerivativeByCentralDifferences) {
           Problem aside = problem;
           aside.reference_correction[power] =
               steps * d * directions.shapes.col(column).reshaped(2, 32);
-          const auto backend = on_native(aside);
+          const auto backend = native::make_backend(aside);
           arrival += weight * rollout(*backend, gain).final.reshaped() / (12 * d);
           forces += weight * backend->jacobian(gain, directions).forces / (12 * d);
         }
@@ -94,7 +93,7 @@ TEST(RolloutJacobian, IsTheDerivativeByCentralDifferences) {
 
 TEST(RolloutJacobian, HasTheForcesOfTheControlEffort) {
   const Problem problem = morph_problem(4);
-  const auto backend = on_native(problem);
+  const auto backend = native::make_backend(problem);
   const double gain = tracking_gain(*backend);
   const RolloutJacobian jacobian = backend->jacobian(gain, one_for_each_power(32));
   // Two dozen samples of a smooth flight.
@@ -104,7 +103,8 @@ TEST(RolloutJacobian, HasTheForcesOfTheControlEffort) {
 TEST(Refine, ArrivesExactlyWhereTheTargetIsWithinReach) {
   for (const std::size_t which : {0u, 4u, 7u, 15u}) {
     const Problem problem = reachable(morph_problem(which));
-    const RefineSummary summary = refine(problem, tracking_gain_of(problem), on_native, on_native);
+    const RefineSummary summary =
+        refine(problem, tracking_gain_of(problem), native::make_backend, native::make_backend);
     EXPECT_TRUE(summary.converged) << summary.reason;
     EXPECT_LT(summary.flight.error.mean, 1e-9 * problem.chain().size);
     EXPECT_GT(summary.error_before, 1e-4);
@@ -114,8 +114,9 @@ TEST(Refine, ArrivesExactlyWhereTheTargetIsWithinReach) {
 TEST(Refine, ArrivesWithLessEffortThanAPlainFlightNeedsToComeNear) {
   for (const std::size_t which : {2u, 3u, 6u, 14u}) {  // M, N, W and S to 2
     const Problem problem = reachable(morph_problem(which));
-    const auto backend = on_native(problem);
-    const RefineSummary summary = refine(problem, tracking_gain(*backend), on_native, on_native);
+    const auto backend = native::make_backend(problem);
+    const RefineSummary summary =
+        refine(problem, tracking_gain(*backend), native::make_backend, native::make_backend);
     EXPECT_TRUE(summary.converged) << summary.reason;
     // The plain control at 300 times as much gain is still a part in a thousand off.
     const Rollout plain = rollout(*backend, backend->largest_gain());
@@ -130,7 +131,7 @@ TEST(Refine, IsNearerWithMoreEffortAndKeepsItsLimit) {
   double last = std::numeric_limits<double>::infinity();
   for (const double limit : {0.4, 0.6, 0.9, 1.3}) {
     const RefineSummary summary =
-        refine(problem, gain, on_native, on_native, {.effort_limit = limit});
+        refine(problem, gain, native::make_backend, native::make_backend, {.effort_limit = limit});
     EXPECT_LE(summary.flight.control_effort, limit);
     EXPECT_GT(summary.flight.control_effort, 0.85 * limit);
     EXPECT_LT(summary.flight.error.mean, last) << limit;
@@ -142,9 +143,9 @@ TEST(Refine, LeavesAFlightThatForgetsHowItStarted) {
   const Problem problem = reachable(morph_problem(3));
   const double gain = tracking_gain_of(problem);
   Problem corrected = problem;
-  const RefineSummary summary = refine(problem, gain, on_native, on_native);
+  const RefineSummary summary = refine(problem, gain, native::make_backend, native::make_backend);
   corrected.reference_correction = summary.reference_correction;
-  const auto backend = on_native(corrected);
+  const auto backend = native::make_backend(corrected);
   EXPECT_EQ(rollout(*backend, gain).final, summary.flight.final);  // the offset says it all
   EXPECT_LT(sensitivity(*backend, summary.flight), 0.1);
 }
@@ -153,7 +154,8 @@ TEST(Refine, ComesNearerToATargetOutOfReach) {
   // Sharp corners: some of its segments are a third of the cloth's.
   const Problem problem =
       make_problem(std::get<ChainScene>(read_scene(NUNO_SCENES "/nuno/n1.json")));
-  const RefineSummary summary = refine(problem, tracking_gain_of(problem), on_native, on_native);
+  const RefineSummary summary =
+      refine(problem, tracking_gain_of(problem), native::make_backend, native::make_backend);
   EXPECT_FALSE(summary.converged);
   EXPECT_LT(summary.flight.error.mean, 0.5 * summary.error_before);
   EXPECT_LT(summary.flight.max_strain, 0.05);  // and is not squeezed into it, which takes 0.5
@@ -161,8 +163,8 @@ TEST(Refine, ComesNearerToATargetOutOfReach) {
 
 TEST(Refine, SaysWhereItFindsNoFlightWithinItsLimit) {
   const Problem problem = morph_problem(14);  // S to 2
-  const RefineSummary summary =
-      refine(problem, tracking_gain_of(problem), on_native, on_native, {.effort_limit = 0.01});
+  const RefineSummary summary = refine(problem, tracking_gain_of(problem), native::make_backend,
+                                       native::make_backend, {.effort_limit = 0.01});
   EXPECT_FALSE(summary.converged);
   EXPECT_EQ(summary.reason, "no flight of so little effort was found");
 }
@@ -171,7 +173,7 @@ TEST(Refine, ImprovesThePapersControlToo) {
   Problem problem = reachable(morph_problem(4));
   problem.reference = Reference::hold;
   problem.damping_ratio = 0;
-  const RefineSummary summary = refine(problem, 0.01, on_native, on_native);
+  const RefineSummary summary = refine(problem, 0.01, native::make_backend, native::make_backend);
   EXPECT_LT(summary.flight.error.mean, 0.1 * summary.error_before);
 }
 
@@ -179,26 +181,29 @@ TEST(Refine, CarriesOverToTheOtherEngineAndIsCorrectedThere) {
   const Problem problem = reachable(morph_problem(2));
   const double length = problem.chain().size;
   const double gain = tracking_gain_of(problem);
-  const RefineSummary answer = refine(problem, gain, on_native, on_native);
+  const RefineSummary answer = refine(problem, gain, native::make_backend, native::make_backend);
   Problem corrected = problem;
   corrected.reference_correction = answer.reference_correction;
-  const double replayed = rollout(*on_box2d(corrected), gain).error.mean;
+  const double replayed = rollout(*box2d::make_backend(corrected), gain).error.mean;
   EXPECT_LT(replayed, 1e-2 * length);
-  const RefineSummary transferred = transfer(problem, answer, on_box2d, on_native);
+  const RefineSummary transferred =
+      transfer(problem, answer, box2d::make_backend, native::make_backend);
   EXPECT_TRUE(transferred.converged);
   EXPECT_LT(transferred.flight.error.mean, 0.3 * replayed);
   EXPECT_LE(transferred.rollouts, answer.rollouts + 7);
-  EXPECT_EQ(transferred.error_before, rollout(*on_box2d(problem), gain).error.mean);
+  EXPECT_EQ(transferred.error_before, rollout(*box2d::make_backend(problem), gain).error.mean);
   corrected.reference_correction = transferred.reference_correction;
-  EXPECT_EQ(rollout(*on_box2d(corrected), gain).final, transferred.flight.final);
+  EXPECT_EQ(rollout(*box2d::make_backend(corrected), gain).final, transferred.flight.final);
 }
 
 TEST(Refine, IsOnlyFlownOnTheOtherEngineUnderAnEffortLimit) {
   const Problem problem = reachable(morph_problem(4));
   const double gain = tracking_gain_of(problem);
   const RefineOptions limited = {.effort_limit = 0.5};
-  const RefineSummary answer = refine(problem, gain, on_native, on_native, limited);
-  const RefineSummary transferred = transfer(problem, answer, on_box2d, on_native, limited);
+  const RefineSummary answer =
+      refine(problem, gain, native::make_backend, native::make_backend, limited);
+  const RefineSummary transferred =
+      transfer(problem, answer, box2d::make_backend, native::make_backend, limited);
   EXPECT_EQ(transferred.reference_correction, answer.reference_correction);
   EXPECT_EQ(transferred.rollouts, answer.rollouts + 2);
   EXPECT_NE(transferred.flight.final, answer.flight.final);
@@ -208,11 +213,12 @@ TEST(Refine, IsOnlyFlownOnTheOtherEngineUnderAnEffortLimit) {
 
 TEST(Refine, LeavesTheCentroidWhereItWas) {
   const Problem problem = reachable(morph_problem(0));
-  EXPECT_LT(refine(problem, 2, on_native, on_native).flight.error.centroid, 1e-10);
+  EXPECT_LT(refine(problem, 2, native::make_backend, native::make_backend).flight.error.centroid,
+            1e-10);
 }
 
 TEST(ParetoFront, FallsInErrorAsItRisesInEffort) {
-  const auto backend = on_native(morph_problem(0));
+  const auto backend = native::make_backend(morph_problem(0));
   const std::vector<ParetoPoint> curve = pareto_front(*backend, 24);
   ASSERT_GT(curve.size(), 5u);
   EXPECT_EQ(curve.front().gain, 0);
@@ -240,7 +246,7 @@ TEST(ParetoFront, LeavesOutWhatIsBeatenInBothAndWhatDiverged) {
 }
 
 TEST(ParetoFront, FindsTheLeastEffortWithinAnErrorLimit) {
-  const auto backend = on_native(morph_problem(0));
+  const auto backend = native::make_backend(morph_problem(0));
   const std::vector<ParetoPoint> curve = pareto_front(*backend, 24);
   const double limit = 0.01;
   const std::optional<ParetoPoint> point = least_effort(*backend, curve, limit);
@@ -252,7 +258,7 @@ TEST(ParetoFront, FindsTheLeastEffortWithinAnErrorLimit) {
 }
 
 TEST(ParetoFront, FindsTheLeastErrorWithinAnEffortLimit) {
-  const auto backend = on_native(morph_problem(0));
+  const auto backend = native::make_backend(morph_problem(0));
   const std::vector<ParetoPoint> curve = pareto_front(*backend, 24);
   const ParetoPoint point = least_error(*backend, curve, 0.2);
   EXPECT_LE(point.effort, 0.2);
@@ -263,7 +269,7 @@ TEST(ParetoFront, FindsTheLeastErrorWithinAnEffortLimit) {
 
 TEST(ParetoFront, EndsWithWhatItsCallerThrows) {
   struct Enough {};
-  const auto backend = on_native(morph_problem(0));
+  const auto backend = native::make_backend(morph_problem(0));
   std::atomic<int> asked = 0;
   EXPECT_THROW(pareto_front(*backend, 24,
                             [&] {

@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <stop_token>
+#include <vector>
 
 #include "scene_library.h"
 
@@ -79,6 +81,24 @@ TEST(Rollout, UnderNoControlDoesNotFeelItsArrival) {
   for (Index n = 0; 4 * n < 5 * backend->steps(); ++n) cloth->step(no_forces);
   EXPECT_LT((flight.frame_positions.back() - cloth->positions()).norm(), 1e-9);
   EXPECT_EQ(flight.frame_times.back(), 1.25);
+}
+
+TEST(Rollout, EndsWhereItIsAskedToStop) {
+  ChainScene scene = scene_library::straight_to_s();
+  Problem problem = make_problem(scene);
+  std::stop_source source;
+  problem.stop = source.get_token();
+  const auto backend = native::make_backend(problem);
+  const std::vector<double> gains(20, 0.01);
+  CorrectionDirections directions;
+  directions.powers = {1};
+  directions.shapes.setOnes(backend->cloth().initial.size(), 1);
+  EXPECT_EQ(rollout(*backend, 0.01).status, RolloutStatus::ok);
+  source.request_stop();
+  EXPECT_THROW(rollout(*backend, 0.01), Stopped);
+  EXPECT_THROW(backend->errors(gains), Stopped);
+  EXPECT_THROW(backend->error_samples(gains), Stopped);
+  EXPECT_THROW(backend->jacobian(0.01, directions), Stopped);
 }
 
 TEST(Perturbation, MovesByItsSizeAndStretchesNothing) {

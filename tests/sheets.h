@@ -1,25 +1,20 @@
 #pragma once
 
+#include <nuno/mesh.h>
 #include <nuno/problem.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
 #include <string>
 
 namespace nuno {
 
-/// A mesh as a test makes it or reads it.
-struct Mesh {
-  Points vertices;  ///< [3 × N], m
-  Faces faces;
+enum class Tiles {
+  quads,
+  triangles,  ///< with diagonals that alternate
+  mixed       ///< quads, every third cut into triangles
 };
 
-enum class Tiles { quads, triangles };
-
-/// A flat grid of columns × rows vertices, `spacing` apart, about the origin in the plane y = 0;
-/// triangles have diagonals that alternate.
+/// A flat grid of columns × rows vertices, `spacing` apart, about the origin in the plane y = 0.
 inline Mesh grid(Index columns, Index rows, double spacing, Tiles tiles = Tiles::quads) {
   Mesh mesh;
   mesh.vertices.resize(3, columns * rows);
@@ -34,9 +29,9 @@ inline Mesh grid(Index columns, Index rows, double spacing, Tiles tiles = Tiles:
   for (Index j = 0; j + 1 < rows; ++j) {
     for (Index i = 0; i + 1 < columns; ++i) {
       const Index a = at(i, j), b = at(i, j + 1), c = at(i + 1, j + 1), d = at(i + 1, j);
-      if (tiles == Tiles::quads) {
+      if (tiles == Tiles::quads || (tiles == Tiles::mixed && (i + j) % 3 != 0)) {
         mesh.faces.push_back({a, b, c, d});
-      } else if ((i + j) % 2 == 0) {
+      } else if (tiles == Tiles::mixed || (i + j) % 2 == 0) {
         mesh.faces.push_back({a, b, c});
         mesh.faces.push_back({a, c, d});
       } else {
@@ -62,38 +57,16 @@ inline Points rolled(const Points& flat, double angle) {
   return result;
 }
 
-/// The vertices and faces of a plain OBJ file: `v` and `f` with positions alone.
-inline Mesh read_plain_obj(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) throw std::runtime_error("cannot read " + path);
-  std::vector<double> coordinates;
-  Mesh mesh;
-  for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    words >> kind;
-    if (kind == "v") {
-      for (double x = 0; words >> x;) coordinates.push_back(x);
-    } else if (kind == "f") {
-      mesh.faces.emplace_back();
-      for (Index i = 0; words >> i;) mesh.faces.back().push_back(i - 1);
-    }
-  }
-  mesh.vertices =
-      Eigen::Map<const Points>(coordinates.data(), 3, static_cast<Index>(coordinates.size() / 3));
-  return mesh;
-}
-
 /// A scene of an independent program's, in tests/data: square-to-halfpipe or disc-to-oblique.
 inline SheetScene reference_sheet(const std::string& name) {
   const std::string path = NUNO_TEST_DATA "/sheets/" + name;
-  const Mesh start = read_plain_obj(path + "-start.obj");
+  const Mesh start = read_mesh(path + "-start.obj");
   SheetScene scene;
   scene.name = name;
   scene.arrival_time = 1;
   scene.initial = start.vertices;
   scene.faces = start.faces;
-  scene.target = read_plain_obj(path + "-target.obj").vertices;
+  scene.target = read_mesh(path + "-target.obj").vertices;
   return scene;
 }
 
@@ -106,6 +79,46 @@ inline Problem problem_of(const Mesh& mesh, const SheetMaterial& material = {.ai
   problem.target = mesh.vertices;
   problem.arrival_time = 1;
   return problem;
+}
+
+/// A flat square sheet of columns × columns vertices that stays where it is.
+inline SheetScene square(Index columns, double side, bool all_quads = true) {
+  const Mesh mesh = grid(columns, columns, side / static_cast<double>(columns - 1),
+                         all_quads ? Tiles::quads : Tiles::mixed);
+  SheetScene scene;
+  scene.arrival_time = 1;
+  scene.initial = scene.target = mesh.vertices;
+  scene.faces = mesh.faces;
+  return scene;
+}
+
+/// A square of cloth thrown into a part of a tube, askew, under damped control: well-conditioned.
+inline SheetScene throw_scene(bool all_quads = true, Index columns = 9) {
+  SheetScene scene = square(columns, 0.8, all_quads);
+  scene.reference = Reference::morph;
+  scene.damping_ratio = 0.7;
+  for (Index i = 0; i < scene.target.cols(); ++i) {
+    const Eigen::Vector3d x = scene.initial.col(i);
+    const double turn = (x.x() + 0.4 * x.z()) / 0.3;
+    scene.target.col(i) << 2 + 0.3 * std::sin(turn), 1 + 0.3 * (1 - std::cos(turn)),
+        0.5 + x.z() - 0.4 * x.x();
+  }
+  scene.target_length = TargetLength::fit;
+  return scene;
+}
+
+/// m/t₀² [N/m].
+inline double gain_scale(const Problem& problem) {
+  return problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
+}
+
+/// The largest distance between two points of one number.
+inline double farthest(const Points& a, const Points& b) {
+  return (a - b).colwise().norm().maxCoeff();
+}
+
+inline SheetMaterial without_losses() {
+  return {.air_drag = 0, .stretch_damping = 0, .shear_damping = 0};
 }
 
 }  // namespace nuno

@@ -164,18 +164,27 @@ TEST_F(Studio, AnswersABodyThatNeverComes) {
             400);
 }
 
-// What a careless or hostile program on the machine can send: 10 000 requests, from a seed.
-TEST_F(Studio, AnswersEveryHostileRequestAndKeepsItsMemory) {
-  constexpr int requests = 10'000, clients = 8, warm_up = 2'000;
-  const auto random_request = [this](std::mt19937& random, bool& leaves) {
-    const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+// What a careless or hostile program on the machine can send, from a seed.
+class HostileClient : public Studio {
+ protected:
+  static int below(int n, std::mt19937& random) {
+    return static_cast<int>(random() % static_cast<unsigned>(n));
+  }
+
+  static std::string some_rubbish(int most, bool printable, std::mt19937& random) {
+    std::string text(static_cast<std::size_t>(below(most, random)), ' ');
+    for (char& c : text) {
+      c = static_cast<char>(printable ? 33 + below(94, random) : below(256, random));
+      if (c == '\n' || c == '\r') c = '.';
+    }
+    return text;
+  }
+
+  /// `leaves`: to hang up in the middle of the body.
+  std::string random_request(std::mt19937& random, bool& leaves) const {
+    const auto below = [&](int n) { return HostileClient::below(n, random); };
     const auto rubbish = [&](int most, bool printable) {
-      std::string text(static_cast<std::size_t>(below(most)), ' ');
-      for (char& c : text) {
-        c = static_cast<char>(printable ? 33 + below(94) : below(256));
-        if (c == '\n' || c == '\r') c = '.';
-      }
-      return text;
+      return some_rubbish(most, printable, random);
     };
     static const std::array paths = {"/api/optimize",
                                      "/api/simulate",
@@ -226,8 +235,11 @@ TEST_F(Studio, AnswersEveryHostileRequestAndKeepsItsMemory) {
       default:
         return post_text(path, scene, "Content-Encoding: gzip\r\n");
     }
-  };
+  }
+};
 
+TEST_F(HostileClient, GetsAnAnswerToEveryRequestAndTheStudioKeepsItsMemory) {
+  constexpr int requests = 10'000, clients = 8, warm_up = 2'000;
   std::atomic<int> next = 0, unanswered = 0, failed = 0;
   std::string first_unanswered;
   std::mutex mutex;

@@ -18,7 +18,7 @@ enum class Hinge {
 
 struct Options {
   Hinge hinge = Hinge::soft_weld;
-  int velocity_iterations = 8;  ///< > 0
+  int velocity_iterations = 8;  ///< > 0; stiff hinges get more
   int position_iterations = 4;  ///< > 0
 };
 
@@ -26,9 +26,11 @@ struct Options {
 /// poses. Rods do not stretch: `stretch_stiffness` and `stretch_damping` have no effect here, and
 /// of launch velocities only what keeps every segment's length is taken (see without_stretching).
 ///
-/// The time step, the problem's or 1/1000 of the arrival time, is cut to what is stable for the
-/// hinges, to 1/4 of the time that drag takes, to one segment's length of flight, and to a whole
-/// number of steps.
+/// The cloth flies about its mass centre, whose own flight is that of mass_center_flight.h: nothing
+/// here depends on how far or how high it is thrown. The time step, the problem's or 1/1000 of the
+/// arrival time, is cut to what the iterations solve of very stiff hinges, to 1/4 of the time that
+/// drag takes, to one segment's length of launch about the mass centre, and to a whole number of
+/// steps.
 ///
 /// A cloth that moves out of Box2D's range (1.9 mean segments or 1.5 rad per step) has diverged:
 /// its positions are NaN from then on. Throws InputError for a scene that Box2D cannot hold: more

@@ -2,10 +2,14 @@
 
 #include <nuno/sheet.h>
 
+#include <stop_token>
 #include <variant>
 #include <vector>
 
 namespace nuno {
+
+/// Whoever asked for the work does not want it any more, see Problem::stop.
+struct Stopped {};
 
 /// A validated scene: throw this cloth so that it has this shape, there, then.
 struct Problem {
@@ -21,6 +25,12 @@ struct Problem {
   /// What is added to the reference motion, a shape [d × N], m, for each of
   /// correction_powers (reference_motion.h); empty: not at all.
   std::vector<Points> reference_correction;
+  /// Once it is requested, whatever flies this problem throws Stopped within a step.
+  std::stop_token stop = {};
+
+  void stop_where_asked() const {
+    if (stop.stop_requested()) throw Stopped();
+  }
 
   /// The cloth, whatever its form.
   const Cloth& cloth() const {

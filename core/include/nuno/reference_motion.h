@@ -40,7 +40,8 @@ class ReferenceMotion {
   /// Mean dw/dt over the last step; its own value at t = 0 [1/s].
   const CorrectionShares& correction_rates() const { return correction_rates_; }
 
-  /// Goes on by one time step.
+  /// Goes on by one time step. Every flight does so at each of its own, so this is where one ends:
+  /// throws Stopped once the problem's stop is requested.
   void advance();
 
  private:
@@ -55,6 +56,7 @@ class ReferenceMotion {
   CorrectionShares correction_rates_ = {};
   Points shape_;
   Points velocity_;
+  std::stop_token stop_;
   Vector relative_mass_;
   /// The way without corrections: a shape that is held, or a motion.
   std::variant<Points, ChainMorph, SheetMorph> way_;

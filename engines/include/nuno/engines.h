@@ -6,7 +6,6 @@
 #include <nuno/scene_file.h>
 
 #include <array>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -44,10 +43,34 @@ void require_refinable(const SceneFile& file);
 /// Throws InputError if the scene's particles have too few modes for so many groups of them.
 void require_groups(const SceneFile& file, Index groups);
 
+/// An engine, and what it flies.
+struct EngineEntry {
+  std::string_view name;             ///< for files and options, as Backend::name
+  std::string_view name_for_people;  ///< for figures and pages
+  bool flies_chains, flies_sheets;
+};
+
+/// Every engine there is; the one of the project first.
+inline constexpr std::array<EngineEntry, 3> all_engines = {{{"native", "native", true, true},
+                                                            {"box2d", "Box2D", true, false},
+                                                            {"bullet", "Bullet", false, true}}};
+
+/// The names of `count` engines that are `wanted`.
+template <std::size_t count, typename Wanted>
+consteval std::array<std::string_view, count> names_of(Wanted wanted) {
+  std::array<std::string_view, count> names;
+  std::size_t n = 0;
+  for (const EngineEntry& engine : all_engines) {
+    if (std::invoke(wanted, engine)) names[n++] = engine.name;
+  }
+  return names;
+}
+
 /// The two engines that fly chains, and those that fly sheets; the one of the project first.
-inline constexpr std::array<std::string_view, 2> chain_engines = {"native", "box2d"};
-inline constexpr std::array<std::string_view, 2> sheet_engines = {"native", "bullet"};
-inline constexpr std::array<std::string_view, 3> backend_names = {"native", "box2d", "bullet"};
+inline constexpr auto chain_engines = names_of<2>(&EngineEntry::flies_chains);
+inline constexpr auto sheet_engines = names_of<2>(&EngineEntry::flies_sheets);
+inline constexpr auto backend_names =
+    names_of<all_engines.size()>([](const EngineEntry&) { return true; });
 
 /// Those that fly the problem's cloth.
 inline const std::array<std::string_view, 2>& engines_for(const Problem& problem) {
@@ -58,20 +81,18 @@ inline const std::array<std::string_view, 2>& engines_for(const Problem& problem
 /// where it does not fly such a cloth, or where one rollout would take hours.
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file);
 
-/// The same with a step that is short enough for `gain` as well.
+/// The same with a step that is short enough for `gain` as well, which messages call `option`.
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
-                                               double gain);
+                                               double gain, std::string_view option = "--alpha");
 
 /// Makes the engine called `name` for the scene's problem corrected elsewhere, see refine.h; `name`
 /// and `file` must outlive it.
 MakeBackend backend_maker(std::string_view name, const SceneFile& file);
 
 /// Refines on the native chain at its tracking gain, and transfers the answer to the engine
-/// called `name`. `before_rollout` is called before each rollout and jacobian; what it throws ends
-/// the work.
+/// called `name`.
 RefineSummary refine_on(std::string_view name, const SceneFile& file,
-                        const RefineOptions& options = {},
-                        const std::function<void()>& before_rollout = {});
+                        const RefineOptions& options = {});
 
 inline constexpr std::array<std::string_view, 2> optimizer_names = {"global", "steepest-descent"};
 

@@ -20,6 +20,11 @@ class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// For a program's first line: a reader that leaves early and a file that may not grow are outputs
+/// that cannot be written, not a silent death; and of the signals that end a program, none does so
+/// without a word or, see write_output, with half a file.
+void handle_signals();
+
 /// Throws OutputError if `path` cannot be written, before the work that it shall hold is done.
 /// Leaves what is there as it is.
 void require_writable(const std::string& path);
@@ -41,14 +46,17 @@ void require_standard_output_written();
 /// Where summaries and tables for people go: not where the JSON of `out` goes.
 std::FILE* people(const std::string& out);
 
-/// A text of a user's on one line and without codes that a terminal would obey.
+/// A text of a user's on one line, in valid UTF-8 and without codes that a terminal would obey.
 std::string printable(std::string text);
 
 /// Says on standard error, on one line, what went wrong.
 void complain(const std::string& message);
 
-/// Tells a person at a terminal how far the work is, on a line that the next call replaces.
-/// Silent where standard error is no terminal.
+/// Says on standard error, on one line, what a person wants to know meanwhile.
+void note(const std::string& message);
+
+/// Tells a person how far the work is: at a terminal on a line that the next call replaces, else,
+/// of work that takes long, on a line every half minute.
 void show_progress(const std::string& text);
 void clear_progress();
 

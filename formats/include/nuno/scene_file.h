@@ -16,9 +16,13 @@ struct SheetInput {
 using AnyScene = std::variant<ChainScene, SheetInput>;
 
 /// Reads and validates a scene: a chain's, or, where `initial` and `target` name mesh files, a
-/// sheet's. A field that is left out has the default above; an unknown one is an error that names
-/// the nearest known one. The scene is named after the file unless it names itself.
+/// sheet's; "-" is standard input. A field that is left out has the default above; an unknown one
+/// is an error that names the nearest known one. The scene is named after the file unless it names
+/// itself.
 AnyScene read_scene(const std::string& path);
+
+/// The same from the text that is in the file at `path`.
+AnyScene parse_any_scene(const std::string& text, const std::string& path);
 
 /// The same from JSON text, of a chain alone: a text has no folder that meshes could be in.
 ChainScene parse_scene(const std::string& json, const std::string& source);

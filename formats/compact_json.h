@@ -1,0 +1,38 @@
+#pragma once
+
+#include <nuno/points.h>
+
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace nuno {
+
+/// What of a JSON document is kept, and how.
+struct JsonForm {
+  /// Where lists of points stand ("/initial"), and how many lists are around each of them.
+  std::map<std::string_view, int> points = {};
+  /// Names of the outermost object that are kept; empty: all.
+  std::set<std::string_view> wanted = {};
+  /// Items that are kept of a list that is none of points; of the others nobody asks.
+  std::size_t longest_list = std::numeric_limits<std::size_t>::max();
+};
+
+/// The JSON of `text` without a value for every number of its points: a list of them is a binary,
+/// see points_of. Of an object's names the first 64 are kept: none that we read has so many. Throws
+/// InputError for what is no JSON, nests deeply, has a name twice, a list of points with anything
+/// else in it, or takes more memory than there is; `source` names the text.
+nlohmann::ordered_json parse_compact(const std::string& text, const std::string& source,
+                                     const JsonForm& form);
+
+/// The points of a binary that parse_compact made [2 or 3 × any].
+Points points_of(const nlohmann::ordered_json& value);
+
+/// A value as a message shows it: on one line, cut where it is long.
+std::string shown(const nlohmann::ordered_json& value);
+
+}  // namespace nuno

@@ -1,0 +1,47 @@
+#include <nuno/mesh.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+
+#include "text_file.h"
+
+namespace nuno {
+namespace {
+
+bool has_extension(std::string_view path, std::string_view extension) {
+  return path.size() >= extension.size() &&
+         std::ranges::equal(path.substr(path.size() - extension.size()), extension,
+                            [](char a, char b) { return a == b || a + ('a' - 'A') == b; });
+}
+
+bool is_gltf(std::string_view path) {
+  return has_extension(path, ".gltf") || has_extension(path, ".glb");
+}
+
+}  // namespace
+
+std::string mesh_file(const std::string& path) {
+  const std::size_t hash = path.find('#');
+  return hash != std::string::npos && is_gltf(path.substr(0, hash)) ? path.substr(0, hash) : path;
+}
+
+bool may_have_morph_targets(const std::string& path) { return is_gltf(mesh_file(path)); }
+
+Mesh read_mesh(const std::string& path) {
+  if (may_have_morph_targets(path)) {
+    const std::string file = mesh_file(path);
+    return read_gltf(file,
+                     file == path ? std::nullopt : std::optional(path.substr(file.size() + 1)));
+  }
+  const bool is_obj = has_extension(path, ".obj"), is_ply = has_extension(path, ".ply");
+  if (!is_obj && !is_ply) {
+    throw InputError(fmt::format("{}: does not end in .obj, .ply, .gltf or .glb", path));
+  }
+  const std::string text = read_text(path, "a mesh");
+  return is_obj ? parse_obj(text, path) : parse_ply(text, path);
+}
+
+}  // namespace nuno

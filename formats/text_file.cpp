@@ -1,0 +1,123 @@
+#include "text_file.h"
+
+#include <nuno/output.h>
+#include <nuno/scene.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <vector>
+
+namespace nuno {
+namespace {
+
+constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
+constexpr std::string_view blanks = " \t\r\v\f";
+
+}  // namespace
+
+std::string read_text(const std::string& path, const char* what, const std::string& name,
+                      std::size_t most) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw InputError(fmt::format("{}: is a directory, not {}", name, what));
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading", name));
+  std::string text;
+  std::vector<char> block(1 << 16);
+  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    if (text.size() > most) {
+      throw InputError(fmt::format("{}: is larger than {} MiB", name, most >> 20));
+    }
+  }
+  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", name));
+  return text;
+}
+
+std::string shown_text(std::string_view value) {
+  return printable(std::string(value.substr(0, 60)));
+}
+
+void Line::refuse(std::string_view value, const std::string& rule) const {
+  value.remove_prefix(std::min(value.find_first_not_of(" \t"), value.size()));
+  throw InputError(fmt::format("{}:{}: {} {}", source, number, shown_text(value), rule));
+}
+
+std::string_view next_word(std::string_view& rest) {
+  const std::size_t start = std::min(rest.find_first_not_of(blanks), rest.size());
+  const std::size_t end = std::min(rest.find_first_of(blanks, start), rest.size());
+  const std::string_view word = rest.substr(start, end - start);
+  rest.remove_prefix(end);
+  return word;
+}
+
+double number(std::string_view word, const Line& line) {
+  std::string_view digits = word;
+  if (digits.starts_with('+')) digits.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool is_number = end == digits.data() + digits.size() && !word.starts_with("+-");
+  if (is_number && error == std::errc::result_out_of_range) {
+    value = std::strtod(std::string(digits).c_str(), nullptr);  // 0 or infinity
+  } else if (!is_number || error != std::errc() || std::isnan(value)) {
+    line.refuse(word, "is not a number");
+  }
+  if (!(std::abs(value) <= largest_scene_number)) {
+    line.refuse(word, fmt::format("is not within ±{}", largest_scene_number));
+  }
+  return value;
+}
+
+void for_each_obj_line(const std::string& text, const std::string& source,
+                       const std::function<void(std::string_view words, const Line& line)>& read) {
+  Line line{source};
+  std::string joined;  // of lines that end in a backslash
+  Index next_line = 1;
+  const auto read_statement = [&](std::string_view raw) {
+    read(raw.substr(0, raw.find('#')), line);
+  };
+  for (std::size_t start = text.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
+       start < text.size();) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    std::string_view raw(text.data() + start, end - start);
+    start = end + 1;
+    if (joined.empty()) line.number = next_line;
+    ++next_line;
+    while (raw.ends_with('\r')) raw.remove_suffix(1);
+    if (raw.ends_with('\\')) {
+      raw.remove_suffix(1);
+      joined.append(raw).append(" ");
+      continue;
+    }
+    if (joined.empty()) {
+      read_statement(raw);
+    } else {
+      read_statement(joined.append(raw));
+      joined.clear();
+    }
+  }
+  if (!joined.empty()) read_statement(joined);
+}
+
+Index obj_index(std::string_view text, std::string_view word, Index count, const char* of,
+                const Line& line) {
+  Index value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) {
+    line.refuse(word, "is not a corner: v, v/vt, v//vn or v/vt/vn");
+  }
+  const Index from_front = value > 0 ? value - 1 : count + value;
+  if (value == 0 || from_front < 0 || from_front >= count) {
+    line.refuse(word, fmt::format("names a {} that is not among the {} above", of, count));
+  }
+  return from_front;
+}
+
+}  // namespace nuno

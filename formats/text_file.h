@@ -1,0 +1,51 @@
+#pragma once
+
+#include <nuno/points.h>
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+// What the readers of text files share.
+
+namespace nuno {
+
+inline constexpr std::size_t largest_file = 256 << 20;  ///< bytes: millions of vertices
+
+/// All of a file. Throws InputError, which begins with `name`, where it cannot be read or is larger
+/// than `most` bytes; `what` says what it should hold: "a mesh".
+std::string read_text(const std::string& path, const char* what, const std::string& name,
+                      std::size_t most = largest_file);
+inline std::string read_text(const std::string& path, const char* what) {
+  return read_text(path, what, path);
+}
+
+/// A place of a file, for messages.
+struct Line {
+  const std::string& source;
+  Index number = 0;
+
+  /// Throws InputError.
+  [[noreturn]] void refuse(std::string_view value, const std::string& rule) const;
+};
+
+/// A value as a message shows it: on one line, cut where it is long.
+std::string shown_text(std::string_view value);
+
+/// Cuts the next word off `rest`; empty at its end.
+std::string_view next_word(std::string_view& rest);
+
+/// A number that is the whole word.
+double number(std::string_view word, const Line& line);
+
+/// The statements of a Wavefront OBJ text: without comments, joined where a line ends in a
+/// backslash.
+void for_each_obj_line(const std::string& text, const std::string& source,
+                       const std::function<void(std::string_view words, const Line& line)>& read);
+
+/// An index of an OBJ file, from 1 on or from the back, as one from 0 on; `word` is the corner that
+/// it is part of, `of` names what it counts.
+Index obj_index(std::string_view text, std::string_view word, Index count, const char* of,
+                const Line& line);
+
+}  // namespace nuno
