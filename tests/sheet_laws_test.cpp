@@ -1,6 +1,7 @@
 // What a sheet is made of, on meshes on which every number can be told.
 
 #include <nuno/sheet.h>
+#include <nuno/sheet_morph.h>
 
 #include <gtest/gtest.h>
 
@@ -146,6 +147,24 @@ TEST(SheetLaws, BendASquareGridAlikeAboutEveryAxis) {
     const double per_area = energy / std::pow(2 * reach, 2);
     const double expected = 0.5 * 3 * material.bending_stiffness * curvature * curvature;
     EXPECT_NEAR(per_area / expected, 1, 1e-3) << axis;  // slopes of up to 0.02, squared
+  }
+}
+
+// Stretch goes linearly on the way, so that a sheet that is drawn out grows steadily.
+TEST(SheetLaws, DrawASheetOutAtASteadyRate) {
+  Problem problem;
+  problem.form = sheet_of(strip, strip_faces);
+  problem.target = 1.5 * strip;
+  problem.target.row(0) *= 0.6;  // one way; the other way it gets narrower
+  problem.arrival_time = 1;
+  problem.reference = Reference::morph;
+  const Points from = problem.cloth().shape_of(strip);
+  const Points to = problem.cloth().shape_of(problem.target);
+  SheetMorph morph(problem, 1.0 / 50);
+  for (Index n = 0; n <= 50; ++n) {
+    const double s = static_cast<double>(n) / 50;
+    EXPECT_LT((morph.shape() - (1 - s) * from - s * to).norm(), 1e-10) << s;
+    morph.advance();
   }
 }
 
