@@ -29,8 +29,9 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
   const std::vector<double> gains = rollout.gains.groups();
   fmt::print(file, "  {:<17} {:.4g} N/m\n", gains.size() > 1 ? "gains α" : "gain α",
              fmt::join(gains, ", "));
-  fmt::print(file, "  {:<17} {:.4g} % of the cloth's length; worst particle {:.4g} %\n", "error",
-             percent * rollout.error.mean, percent * rollout.error.max);
+  fmt::print(file, "  {:<17} {:.4g} % of the cloth's {}; worst particle {:.4g} %\n", "error",
+             percent * rollout.error.mean, backend.problem().is_sheet() ? "size" : "length",
+             percent * rollout.error.max);
   fmt::print(file, "  {:<17} {:.3g} m from the target's\n", "centroid", rollout.error.centroid);
   fmt::print(file, "  {:<17} {:.4g} {}\n", "control effort", rollout.control_effort,
              effort_unit_name(cloth));
