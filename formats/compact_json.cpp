@@ -79,6 +79,8 @@ class Reader {
 
  private:
   enum class Kind { object, list, points, point };
+  // To clang-tidy, moving nlohmann's JSON may throw.
+  // NOLINTNEXTLINE(bugprone-exception-escape)
   struct Level {
     Kind kind = Kind::list;
     Json value = {};          ///< of an object or a list; of a point, what a message shows of it
