@@ -127,8 +127,7 @@ Edges edges_of(const Field& root, bool is_sheet, Index particles) {
       }
     }
     std::ranges::sort(ends);
-    const auto repeated = std::ranges::unique(ends);
-    ends.erase(repeated.begin(), repeated.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   } else {
     for (Index i = 0; i + 1 < particles; ++i) ends.emplace_back(i, i + 1);
   }
