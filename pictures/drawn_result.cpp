@@ -77,7 +77,7 @@ struct Field {
   /// A shape of `particles` points of `rows` numbers; of any number of them if `particles` is 0.
   Points points(Index particles, Index rows) const {
     if (!value.is_binary()) list(2);
-    const Points result = value.is_binary() ? points_of(value) : Points(rows, 0);
+    Points result = value.is_binary() ? points_of(value) : Points(rows, 0);
     const Index count = result.cols();
     if (count < 2) refuse("has not at least 2 items");
     if (particles > 0 && count != particles) {
