@@ -133,7 +133,7 @@ class Document {
 };
 
 void write(std::FILE* file, const void* data, std::size_t size) {
-  std::fwrite(data, 1, size, file);
+  if (size > 0) std::fwrite(data, 1, size, file);  // nothing may stand nowhere
 }
 
 void write_words(std::FILE* file, std::initializer_list<std::uint32_t> words) {
