@@ -57,6 +57,7 @@ std::vector<ChainScene> scenes(const Options& options) {
   }
   std::ranges::sort(paths);
   std::vector<ChainScene> result;
+  result.reserve(paths.size());
   for (const std::string& path : paths) result.push_back(std::get<ChainScene>(read_scene(path)));
   for (ChainScene& scene : scene_library::family(options.quick ? 8 : 48)) {
     result.push_back(std::move(scene));
