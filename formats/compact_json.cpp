@@ -19,8 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Ours are five deep. Far deeper values could not even be shown without running out of stack.
-constexpr std::size_t deepest = 16;
 constexpr std::size_t most_names = 64;
 constexpr std::size_t most_rows = 3;  // coordinates of a point
 
@@ -32,12 +30,12 @@ class Reader {
   Json take() { return std::move(root_); }
 
   // What the parser calls; false would end it.
-  bool null() { return put(nullptr); }
-  bool boolean(bool value) { return put(value); }
-  bool number_integer(Json::number_integer_t value) { return put(value); }
-  bool number_unsigned(Json::number_unsigned_t value) { return put(value); }
-  bool number_float(double value, const std::string&) { return put(value); }
-  bool string(std::string& value) { return put(std::move(value)); }
+  bool null() { return scalar(nullptr); }
+  bool boolean(bool value) { return scalar(value); }
+  bool number_integer(Json::number_integer_t value) { return scalar(value); }
+  bool number_unsigned(Json::number_unsigned_t value) { return scalar(value); }
+  bool number_float(double value, const std::string&) { return scalar(value); }
+  bool string(std::string& value) { return scalar(std::move(value)); }
   bool binary(Json::binary_t&) { return true; }  // JSON has none
 
   bool start_object(std::size_t) {
@@ -114,9 +112,22 @@ class Reader {
     return found == form_.points.end() ? -1 : found->second;
   }
 
+  bool scalar(Json value) {
+    count();
+    return put(std::move(value));
+  }
+
+  /// Counts a value, kept or not.
+  void count() {
+    if (++values_ > form_.most_values) {
+      throw InputError(fmt::format("{}: /: has more than {} values", source_, form_.most_values));
+    }
+  }
+
   bool begin(Kind kind) {
-    if (levels_.size() + skipped_ >= deepest) {
-      throw InputError(fmt::format("{}: /: nested more than {} deep", source_, deepest));
+    count();
+    if (levels_.size() + skipped_ >= form_.deepest) {
+      throw InputError(fmt::format("{}: /: nested more than {} deep", source_, form_.deepest));
     }
     if (skips()) {
       ++skipped_;
@@ -198,12 +209,13 @@ class Reader {
   const JsonForm& form_;
   Json root_;
   std::vector<Level> levels_;
+  std::size_t values_ = 0;
   std::size_t skipped_ = 0;  ///< levels that are open and not kept
 };
 
 }  // namespace
 
-Json parse_compact(const std::string& text, const std::string& source, const JsonForm& form) {
+Json parse_compact(std::string_view text, const std::string& source, const JsonForm& form) {
   auto reader = std::make_unique<Reader>(source, form);
   try {
     Json::sax_parse(text, reader.get());

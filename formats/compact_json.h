@@ -20,13 +20,16 @@ struct JsonForm {
   std::set<std::string_view> wanted = {};
   /// Items that are kept of a list that is none of points; of the others nobody asks.
   std::size_t longest_list = std::numeric_limits<std::size_t>::max();
+  /// Values in one another; far deeper ones could not even be shown without running out of stack.
+  std::size_t deepest = 16;
+  std::size_t most_values = std::numeric_limits<std::size_t>::max();  ///< kept or not
 };
 
 /// The JSON of `text` without a value for every number of its points: a list of them is a binary,
 /// see points_of. Of an object's names the first 64 are kept: none that we read has so many. Throws
-/// InputError for what is no JSON, nests deeply, has a name twice, a list of points with anything
-/// else in it, or takes more memory than there is; `source` names the text.
-nlohmann::ordered_json parse_compact(const std::string& text, const std::string& source,
+/// InputError for what is no JSON, nests deeply, has too many values or a name twice, a list of
+/// points with anything else in it, or takes more memory than there is; `source` names the text.
+nlohmann::ordered_json parse_compact(std::string_view text, const std::string& source,
                                      const JsonForm& form);
 
 /// The points of a binary that parse_compact made [2 or 3 × any].

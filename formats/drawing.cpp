@@ -1,4 +1,5 @@
 #include <nuno/drawing.h>
+#include <nuno/input.h>
 
 #include <fmt/format.h>
 
@@ -58,7 +59,8 @@ bool is_drawing(const std::string& curve) {
   const CurveName asked = curve_name(curve);
   if (!is_drawing_path(asked.path)) return false;
   if (!has_extension(asked.path, ".obj")) return true;
-  return has_only_lines(read_text(asked.path, "a mesh or a drawing"), asked.path);
+  return has_only_lines(read_file(asked.path, asked.path, "a mesh or a drawing", largest_file),
+                        asked.path);
 }
 
 Points read_curve(const std::string& curve) {
@@ -66,7 +68,7 @@ Points read_curve(const std::string& curve) {
   if (!is_drawing_path(path)) {
     throw InputError(fmt::format("{}: does not end in {}", path, fmt::join(extensions, ", ")));
   }
-  const std::string text = read_text(path, "a drawing");
+  const std::string text = read_file(path, path, "a drawing", largest_file);
   if (has_extension(path, ".svg")) return parse_svg(text, path, name);
   if (has_extension(path, ".obj")) return parse_obj_curve(text, path, name);
   if (!name.empty()) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "compact_json.h"
 #include "gltf_document.h"
 
 namespace nuno {

@@ -1,22 +1,25 @@
 #include "gltf_document.h"
 
+#include <nuno/input.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 
+#include "compact_json.h"
 #include "text_file.h"
 
 namespace nuno {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t largest_json = 64 << 20;      // bytes
 constexpr std::size_t largest_buffers = 256 << 20;  // bytes, all together
-constexpr JsonLimits limits = {"glTF", 64, 2'000'000};
+const JsonForm gltf_form = {.deepest = 64, .most_values = 2'000'000};
 
 // Numbers of the container.
 constexpr std::string_view magic = "glTF";
@@ -140,14 +143,14 @@ const std::string& GltfItem::text() const {
 }
 
 GltfDocument::GltfDocument(const std::string& path) : path_(path) {
-  text_ = read_text(path, "a mesh");
+  text_ = read_file(path, path, "a mesh", largest_file);
   if (text_.starts_with(magic)) {
     split_container();
   } else {
     if (text_.size() > largest_json) {
       root().at.refuse(fmt::format("is larger than {} MiB of JSON", largest_json >> 20));
     }
-    json_ = parse_json<Json>(text_, path_, limits);
+    json_ = parse_compact(text_, path_, gltf_form);
     text_ = {};
   }
   const GltfItem version = root().child("asset").child("version");
@@ -180,7 +183,7 @@ void GltfDocument::split_container() {
       if (length > largest_json) {
         refuse(at, fmt::format("is larger than {} MiB of JSON", largest_json >> 20));
       }
-      json_ = parse_json<Json>(all.substr(start, length), path_, limits);
+      json_ = parse_compact(all.substr(start, length), path_, gltf_form);
     } else if (type == binary_chunk && !binary_) {
       binary_ = all.substr(start, length);
     }
@@ -215,9 +218,9 @@ std::string GltfDocument::load(const GltfItem& uri) const {
   if (!fs::is_regular_file(file, error)) {
     uri.at.refuse(fmt::format("{} is not there, or no file", shown(uri.value)));
   }
-  return read_text(file.string(), "numbers of a mesh",
+  return read_file(file.string(),
                    fmt::format("{}: {}: {}", path_, uri.at.pointer, shown(uri.value)),
-                   largest_buffers);
+                   "numbers of a mesh", largest_buffers);
 }
 
 std::string_view GltfDocument::buffer(const GltfItem& index) {

@@ -15,7 +15,7 @@ namespace nuno {
 /// A value of a glTF file and its place there. All that is asked for is refused, with that place,
 /// where it is not as asked.
 struct GltfItem {
-  const nlohmann::json& value;
+  const nlohmann::ordered_json& value;
   Field at;
 
   bool has(const char* name) const;
@@ -69,7 +69,7 @@ class GltfDocument {
                   Points& into);
 
   std::string path_, text_;
-  nlohmann::json json_;
+  nlohmann::ordered_json json_;
   std::optional<std::string_view> binary_;  ///< a .glb's own buffer, in text_
   std::map<std::size_t, std::string> loaded_;
 };

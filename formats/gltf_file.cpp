@@ -11,6 +11,7 @@
 #include <map>
 #include <tuple>
 
+#include "compact_json.h"
 #include "gltf_document.h"
 
 namespace nuno {
@@ -212,9 +213,9 @@ class Reader {
       if (target.has("POSITION")) moved.emplace(target.child("POSITION"));
     }
     const bool is_textured = attributes.has("TEXCOORD_0");
-    const auto key =
-        std::tuple(position.value, is_textured ? attributes.value["TEXCOORD_0"] : nlohmann::json(),
-                   moved ? moved->value : nlohmann::json());
+    const auto key = std::tuple(
+        position.value, is_textured ? attributes.value["TEXCOORD_0"] : nlohmann::ordered_json(),
+        moved ? moved->value : nlohmann::ordered_json());
     const auto [found, is_new] = known_.try_emplace(key);
     if (!is_new) return found->second;
 
@@ -274,7 +275,9 @@ class Reader {
 
   GltfDocument& document_;
   std::optional<std::size_t> target_;
-  std::map<std::tuple<nlohmann::json, nlohmann::json, nlohmann::json>, Vertices> known_;
+  std::map<std::tuple<nlohmann::ordered_json, nlohmann::ordered_json, nlohmann::ordered_json>,
+           Vertices>
+      known_;
   std::vector<double> positions_, textures_;
   Faces faces_;
   Index triangles_ = 0;  // with those left out

@@ -1,3 +1,4 @@
+#include <nuno/input.h>
 #include <nuno/mesh.h>
 
 #include <fmt/format.h>
@@ -40,7 +41,7 @@ Mesh read_mesh(const std::string& path) {
   if (!is_obj && !is_ply) {
     throw InputError(fmt::format("{}: does not end in .obj, .ply, .gltf or .glb", path));
   }
-  const std::string text = read_text(path, "a mesh");
+  const std::string text = read_file(path, path, "a mesh", largest_file);
   return is_obj ? parse_obj(text, path) : parse_ply(text, path);
 }
 

@@ -1,7 +1,5 @@
 #include <nuno/mesh.h>
 
-#include <nuno/output.h>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,16 +7,16 @@
 #include <bit>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
 #include <string_view>
+
+#include "text_file.h"
 
 namespace nuno {
 namespace {
 
 constexpr std::size_t most_corners = 1000;     // of a face
 constexpr std::size_t most_properties = 1000;  // of an element
-constexpr std::string_view blanks = " \t\r\v\f";
 
 enum class Format { ascii, little_endian, big_endian };
 
@@ -46,15 +44,6 @@ struct Element {
   std::vector<Property> properties;
 };
 
-/// Cuts the next word off `rest`; empty at its end.
-std::string_view next_word(std::string_view& rest) {
-  const std::size_t start = std::min(rest.find_first_not_of(blanks), rest.size());
-  const std::size_t end = std::min(rest.find_first_of(blanks, start), rest.size());
-  const std::string_view word = rest.substr(start, end - start);
-  rest.remove_prefix(end);
-  return word;
-}
-
 /// What is left of a file, and where that is, for messages.
 struct Place {
   const std::string& source;
@@ -65,10 +54,8 @@ struct Place {
 
   [[noreturn]] void refuse(std::string_view value, const std::string& rule) const {
     std::string at = line > 0 ? fmt::format(":{}", line) : "";
-    if (line == 0 && element)
-      at = fmt::format(": {} {}", printable(std::string(element->name)), row);
-    throw InputError(
-        fmt::format("{}{}: {} {}", source, at, printable(std::string(value.substr(0, 60))), rule));
+    if (line == 0 && element) at = fmt::format(": {} {}", shown_text(element->name), row);
+    throw InputError(fmt::format("{}{}: {} {}", source, at, shown_text(value), rule));
   }
 
   /// The next line, without its end.
@@ -183,7 +170,7 @@ class Rows {
       const auto line = place_.next_line();
       if (!line) end_of_file();
       row_ = *line;
-    } while (row_.find_first_not_of(blanks) == std::string_view::npos);
+    } while (row_.find_first_not_of(line_blanks) == std::string_view::npos);
     left_ = row_;
   }
 
@@ -232,16 +219,9 @@ class Rows {
   double written(const Type& type) {
     const std::string_view word = next_word(left_);
     if (word.empty()) place_.refuse(row_, "has fewer values than the header says");
-    std::string_view digits = word;
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    const bool is_number = end == digits.data() + digits.size();
-    if (is_number && error == std::errc::result_out_of_range) {
-      value = std::strtod(std::string(digits).c_str(), nullptr);  // 0 or infinity
-    } else if (!is_number || error != std::errc() || std::isnan(value)) {
-      place_.refuse(word, "is not a number");
-    }
+    const std::optional<double> found = number_in(word);
+    if (!found) place_.refuse(word, "is not a number");
+    const double value = *found;
     if (type.is_integer && (value != std::floor(value) || std::abs(value) > 0x1p32)) {
       place_.refuse(word, fmt::format("is not a number of type {}", type.name));
     }

@@ -9,37 +9,13 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <vector>
 
 namespace nuno {
 namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
-constexpr std::string_view blanks = " \t\r\v\f";
 
 }  // namespace
-
-std::string read_text(const std::string& path, const char* what, const std::string& name,
-                      std::size_t most) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(fmt::format("{}: is a directory, not {}", name, what));
-  }
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError(fmt::format("{}: cannot be opened for reading", name));
-  std::string text;
-  std::vector<char> block(1 << 16);
-  while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
-    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > most) {
-      throw InputError(fmt::format("{}: is larger than {} MiB", name, most >> 20));
-    }
-  }
-  if (file.bad()) throw InputError(fmt::format("{}: cannot be read", name));
-  return text;
-}
 
 std::string shown_text(std::string_view value) {
   return printable(std::string(value.substr(0, 60)));
@@ -51,24 +27,30 @@ void Line::refuse(std::string_view value, const std::string& rule) const {
 }
 
 std::string_view next_word(std::string_view& rest) {
-  const std::size_t start = std::min(rest.find_first_not_of(blanks), rest.size());
-  const std::size_t end = std::min(rest.find_first_of(blanks, start), rest.size());
+  const std::size_t start = std::min(rest.find_first_not_of(line_blanks), rest.size());
+  const std::size_t end = std::min(rest.find_first_of(line_blanks, start), rest.size());
   const std::string_view word = rest.substr(start, end - start);
   rest.remove_prefix(end);
   return word;
 }
 
-double number(std::string_view word, const Line& line) {
+std::optional<double> number_in(std::string_view word) {
   std::string_view digits = word;
   if (digits.starts_with('+')) digits.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-  const bool is_number = end == digits.data() + digits.size() && !word.starts_with("+-");
-  if (is_number && error == std::errc::result_out_of_range) {
-    value = std::strtod(std::string(digits).c_str(), nullptr);  // 0 or infinity
-  } else if (!is_number || error != std::errc() || std::isnan(value)) {
-    line.refuse(word, "is not a number");
+  if (end != digits.data() + digits.size() || word.starts_with("+-") || std::isnan(value))
+    return {};
+  if (error == std::errc::result_out_of_range) {
+    return std::strtod(std::string(digits).c_str(), nullptr);  // 0 or infinity
   }
+  return error == std::errc() ? std::optional(value) : std::nullopt;
+}
+
+double number(std::string_view word, const Line& line) {
+  const std::optional<double> found = number_in(word);
+  if (!found) line.refuse(word, "is not a number");
+  const double value = *found;
   if (!(std::abs(value) <= largest_scene_number)) {
     line.refuse(word, fmt::format("is not within ±{}", largest_scene_number));
   }

@@ -2,7 +2,9 @@
 
 #include <nuno/points.h>
 
+#include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,14 +13,6 @@
 namespace nuno {
 
 inline constexpr std::size_t largest_file = 256 << 20;  ///< bytes: millions of vertices
-
-/// All of a file. Throws InputError, which begins with `name`, where it cannot be read or is larger
-/// than `most` bytes; `what` says what it should hold: "a mesh".
-std::string read_text(const std::string& path, const char* what, const std::string& name,
-                      std::size_t most = largest_file);
-inline std::string read_text(const std::string& path, const char* what) {
-  return read_text(path, what, path);
-}
 
 /// A place of a file, for messages.
 struct Line {
@@ -32,10 +26,16 @@ struct Line {
 /// A value as a message shows it: on one line, cut where it is long.
 std::string shown_text(std::string_view value);
 
+inline constexpr std::string_view line_blanks = " \t\r\v\f";
+
 /// Cuts the next word off `rest`; empty at its end.
 std::string_view next_word(std::string_view& rest);
 
-/// A number that is the whole word.
+/// The number that is the whole word; infinite or 0 where it is beyond doubles, none where it is no
+/// number.
+std::optional<double> number_in(std::string_view word);
+
+/// The same within those of a scene. Throws InputError.
 double number(std::string_view word, const Line& line);
 
 /// The statements of a Wavefront OBJ text: without comments, joined where a line ends in a

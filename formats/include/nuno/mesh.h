@@ -75,6 +75,7 @@ void require_sheet(const Mesh& mesh, const std::string& path);
 
 /// The same for a pose of it, of which only the vertices count.
 void require_pose(const Mesh& pose, const std::string& path);
+
 /// A face for messages: the file and the face's line or number, and its corners' numbers there.
 std::string face_place(const Mesh& mesh, const std::string& path, std::size_t face);
 std::string numbers_in_file(const Mesh& mesh, std::vector<Index> face);
