@@ -147,6 +147,22 @@ class Program : public testing::Test {
     return run;
   }
 
+  /// The run is refused as bad input, in one line that begins with `start` and that a person and a
+  /// terminal can read; it shows the value and says the rule.
+  static void expect_refusal(const Outcome& run, const std::string& start, const std::string& value,
+                             const std::string& rule) {
+    EXPECT_EQ(run.status, 2) << run.err;
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(is_one_line(run.err)) << run.err;
+    EXPECT_TRUE(run.err.starts_with(start)) << run.err << "not after " << start;
+    EXPECT_NE(run.err.find(value), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(rule), std::string::npos) << run.err;
+    EXPECT_LT(run.err.size(), 600u) << "a line that a person can read";
+    for (const char c : run.err.substr(0, run.err.size() - 1)) {
+      EXPECT_GE(static_cast<unsigned char>(c), ' ') << "no code for a terminal";
+    }
+  }
+
   Json simulated(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"--out", "-"});
     const Outcome run = nuno(arguments);
