@@ -47,6 +47,17 @@ Json without(const Json& json, const std::string& pointer) {
   return json.patch({{{"op", "remove"}, {"path", pointer}}});
 }
 
+/// Those of chain_with_every_field, and of the sheet's, that do not ask what the cloth is.
+void expect_fields_of_any_cloth(const Scene& scene) {
+  EXPECT_EQ(scene.launch, Launch::inextensible);
+  EXPECT_EQ(scene.reference, Reference::morph);
+  EXPECT_EQ(scene.arrival, Arrival::settle);
+  EXPECT_EQ(scene.damping_ratio, 0.35);
+  EXPECT_EQ(scene.target_length, TargetLength::as_drawn);
+  EXPECT_EQ(scene.time_step, 0.0015);
+  EXPECT_EQ(scene.frames_per_second, 24);
+}
+
 TEST(ChainFields, AreAllRead) {
   const ChainScene scene = parse_scene(chain_with_every_field().dump(), "file.json");
   EXPECT_EQ(scene.name, "every");
@@ -61,13 +72,7 @@ TEST(ChainFields, AreAllRead) {
   EXPECT_EQ(scene.cloth.stretch_damping, 7e-4);
   EXPECT_EQ(scene.cloth.hinge_stiffness, 2e-3);
   EXPECT_EQ(scene.cloth.hinge_damping, 1e-7);
-  EXPECT_EQ(scene.launch, Launch::inextensible);
-  EXPECT_EQ(scene.reference, Reference::morph);
-  EXPECT_EQ(scene.arrival, Arrival::settle);
-  EXPECT_EQ(scene.damping_ratio, 0.35);
-  EXPECT_EQ(scene.target_length, TargetLength::as_drawn);
-  EXPECT_EQ(scene.time_step, 0.0015);
-  EXPECT_EQ(scene.frames_per_second, 24);
+  expect_fields_of_any_cloth(scene);
 }
 
 TEST(ChainFields, AreAllWritten) {
@@ -242,13 +247,7 @@ TEST_F(SheetFields, AreAllRead) {
   EXPECT_EQ(scene.cloth.bending_stiffness, 2e-5);
   EXPECT_EQ(scene.cloth.bending_damping, 1e-7);
   EXPECT_EQ(scene.rest, Rest::flat);
-  EXPECT_EQ(scene.launch, Launch::inextensible);
-  EXPECT_EQ(scene.reference, Reference::morph);
-  EXPECT_EQ(scene.arrival, Arrival::settle);
-  EXPECT_EQ(scene.damping_ratio, 0.35);
-  EXPECT_EQ(scene.target_length, TargetLength::as_drawn);
-  EXPECT_EQ(scene.time_step, 0.0015);
-  EXPECT_EQ(scene.frames_per_second, 24);
+  expect_fields_of_any_cloth(scene);
 }
 
 TEST_F(SheetFields, HaveTheirDefaultsWhereTheyAreLeftOut) {

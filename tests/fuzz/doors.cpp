@@ -125,19 +125,19 @@ void require_answer(const studio::Answer& answer) {
   }
 }
 
-/// The answer to work that is ended after some milliseconds, as by a client that leaves.
-studio::Answer done_in_time(const studio::Work& work) {
+/// The answer to work that is ended after a while, as by a client that leaves.
+studio::Answer done_in_time(const studio::Work& work, std::chrono::milliseconds patience) {
   std::mutex mutex;
   std::condition_variable_any ended;
   const std::jthread leaves([&](std::stop_token stop) {
     std::unique_lock lock(mutex);
-    ended.wait_for(lock, stop, std::chrono::milliseconds(20), [] { return false; });
+    ended.wait_for(lock, stop, patience, [] { return false; });
     work.turn.end();
   });
   return work.run();
 }
 
-bool enter_page(const std::string& input) {
+bool enter_page(const std::string& input, std::chrono::milliseconds patience) {
   namespace http = boost::beast::http;
   static studio::Site site(port);
   http::request_parser<http::string_body> parser;
@@ -159,7 +159,8 @@ bool enter_page(const std::string& input) {
   if (error || !parser.is_done()) return false;
   const auto asked = site.post(head, parser.get().body());
   const auto* const work = std::get_if<studio::Work>(&asked);
-  const studio::Answer answer = work ? done_in_time(*work) : std::get<studio::Answer>(asked);
+  const studio::Answer answer =
+      work ? done_in_time(*work, patience) : std::get<studio::Answer>(asked);
   require_answer(answer);
   return answer.status == 200;
 }
@@ -217,7 +218,7 @@ std::vector<std::string> seeds(Door door) {
               "4\r\n{\"a\"\r\n0\r\nX: y\r\n\r\n"};
 }
 
-bool enter(Door door, const std::string& input) {
+bool enter(Door door, const std::string& input, std::chrono::milliseconds patience) {
   try {
     switch (door) {
       case Door::scene:
@@ -229,7 +230,7 @@ bool enter(Door door, const std::string& input) {
       case Door::result:
         return enter_result(input);
       case Door::page_request:
-        return enter_page(input);
+        return enter_page(input, patience);
     }
   } catch (const InputError& error) {
     require_text(printable(error.what()));  // as people see it: a name may hold any byte
