@@ -238,10 +238,10 @@ FlightFigure captioned(const std::vector<Flight>& flights, bool plain) {
   const Flight& first = flights.front();
   if (flights.size() == 1) {
     figure.title = first.scene;
-    figure.subtitle =
-        fmt::format("{}, {} particles, α = {} N/m: mean error {:.3g} % of the cloth’s length",
-                    engine_name(first.backend), first.target.cols(), shown(first.gain),
-                    100 * first.error / first.cloth_length);
+    figure.subtitle = fmt::format(
+        "{}, {} particles, α = {} N/m: mean error {:.3g} % of the cloth’s {}",
+        engine_name(first.backend), first.target.cols(), shown(first.gain),
+        100 * first.error / first.cloth_length, first.target.rows() == 3 ? "size" : "length");
   } else {
     const bool one_scene = std::ranges::all_of(
         flights, [&](const Flight& flight) { return flight.scene == first.scene; });
