@@ -60,8 +60,8 @@ class LowPass {
 /// About the target a sheet under control is nearly a linear oscillator,
 ///     ẍ + b·ẋ + (M⁻¹K + a)·x = a·w·δ + b·ẇ·δ,   a = α/m̄, b = β/m̄,
 /// which follows a late correction δ, w ≈ exp((t − t₀)/τ), by x = (a + b/τ)/(λ + a + b/τ + 1/τ²)·δ
-/// for each eigenvalue λ of M⁻¹K, and an early one, that its launch goes along with, by a/(λ + a).
-/// Both are undone by a product with the stiffness matrix K.
+/// for each eigenvalue λ of M⁻¹K: a product with the stiffness matrix K undoes it. An early one,
+/// that its launch goes along with, is followed by a/(λ + a): as it is where the sheet is soft.
 class QuasiStaticModel {
  public:
   QuasiStaticModel(const Problem& problem, double gain)
@@ -85,9 +85,6 @@ class QuasiStaticModel {
     return std::make_unique<const LowPass>(stiffness_, masses_, squared_frequency);
   }
 
-  Vector early(const Vector& displacement) const {
-    return displacement + accelerations(displacement) / pull_;
-  }
   Vector late(const Vector& displacement) const {
     return (accelerations(displacement) + late_inertia_ * displacement) / late_pull_;
   }
@@ -191,7 +188,7 @@ class SheetRefinement {
     Step step = secants_.fit(*visible_, left);
     const Vector seen = (*visible_)(left);
     const Vector soft = bandwidth_ > model_.soft() ? (*soft_)(left) : seen;
-    step.early += model_.early(soft);
+    step.early += soft;
     step.late += model_.late(seen - soft);
     return step;
   }

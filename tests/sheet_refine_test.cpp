@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 
 #include "sheets.h"
@@ -58,10 +59,10 @@ RefineSummary refined(const Problem& problem, const RefineOptions& options = {})
 }
 
 /// A target that no cloth can be: stretched along one side as the other keeps its length.
-Problem beyond_reach() {
+Problem beyond_reach(double stretch = 0.02) {
   Problem problem = reachable(half_pipe);
   for (Index i = 0; i < problem.target.cols(); ++i) {
-    problem.target.col(i).head<2>() *= 1 + 0.02 * problem.target(2, i);
+    problem.target.col(i).head<2>() *= 1 + stretch * problem.target(2, i);
   }
   return problem;
 }
@@ -102,8 +103,23 @@ TEST(SheetRefine, ComesOutOfReachAsNearAsIsWorthIt) {
   EXPECT_FALSE(summary.converged);
   EXPECT_LT(summary.flight.error.mean, 0.5 * summary.error_before);
   EXPECT_NE(summary.reason.find("do not fit"), std::string::npos) << summary.reason;
-  // A particle's weight of effort for 1e-4·L: what the first flight lacked pays for it.
-  EXPECT_LT(summary.flight.control_effort, 1e4 * summary.error_before / problem.cloth().size);
+}
+
+TEST(SheetRefine, NeverLosesWhatItHas) {
+  const auto cost = [](const Problem& problem, const Rollout& flight) {
+    return std::hypot(flight.control_effort, 1e4 * flight.error.mean / problem.cloth().size);
+  };
+  const Problem within = reachable([](double s) { return 5 * s; }), beyond = beyond_reach(0.003);
+  double error = std::numeric_limits<double>::infinity(), spent = error;
+  for (Index rounds = 1; rounds <= 24; rounds += rounds < 8 ? 1 : 4) {
+    const RefineSummary nearer = refined(within, {.rounds = rounds});
+    EXPECT_LE(nearer.flight.error.mean, error);
+    error = nearer.flight.error.mean;
+    // Out of reach an error of 1e-4·L is worth a particle's weight.
+    const double now = cost(beyond, refined(beyond, {.rounds = rounds}).flight);
+    EXPECT_LE(now, spent);
+    spent = now;
+  }
 }
 
 TEST(SheetRefine, KeepsTheEffortLimit) {
