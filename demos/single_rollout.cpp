@@ -67,16 +67,21 @@ void require_room(const SceneFile& file, const std::string& out,
   require_writable(out);
 }
 
-ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains,
+ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
                const std::string& out, const AnimationOptions& animation,
                const std::optional<Optimization>& optimization) {
-  const LongWork told(backend, file.scene.name, 2);  // the flight, and the twin that judges it
+  // The flight, and those that judge it: its twin, and at half of its step.
+  const LongWork told(asked, file.scene.name, 4);
   const double frames = out.empty() ? 0 : file.scene.frames_per_second;
-  const Rollout flight =
-      rollout(backend, gains, {.frames_per_second = frames, .tail = animation.tail});
+  auto [finer, flight] =
+      resolved_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
   if (diverged(flight)) {
-    report_divergence(file.path, backend, flight);
+    report_divergence(file.path, asked, flight);
     return ExitStatus::diverged;
+  }
+  const Backend& backend = finer ? *finer : asked;
+  if (const auto half = at_finer_step(backend, file, 0.5)) {
+    flight.step_error = step_error(*half, flight);
   }
   const double growth = bounded_sensitivity(backend, flight);
   if (!out.empty()) {
@@ -89,6 +94,10 @@ ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains
     }
   }
   print_summary(people(out), file.scene.name, backend, flight, growth);
+  if (finer) {
+    fmt::print(people(out), "  {:<17} it diverges in {} steps of {}\n", "shorter steps",
+               asked.steps(), duration(asked.time_step()));
+  }
   if (file.mesh) {
     for (const std::string& remark : file.mesh->remarks) {
       fmt::print(people(out), "  {:<17} {}\n", "mesh", printable(remark));

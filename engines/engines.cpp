@@ -4,6 +4,7 @@
 
 #include <nuno/box2d.h>
 #include <nuno/bullet.h>
+#include <nuno/conditioning.h>
 #include <nuno/input.h>
 #include <nuno/native.h>
 
@@ -165,6 +166,26 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
     backend = make_backend(name, file, file.problem.arrival_time / steps);
   }
   return backend;
+}
+
+std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& file,
+                                       double share) {
+  const double steps = static_cast<double>(backend.steps()) / share;
+  if (too_long(steps, file) || steps > most_steps) return nullptr;
+  return make_backend(backend.name(), file, backend.time_step() * share);
+}
+
+ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
+                                 const RolloutOptions& options) {
+  ResolvedRollout result{nullptr, rollout(backend, gains, options)};
+  for (const double share : {1.0 / 4, 1.0 / 16}) {
+    if (!diverged(result.flight) || file.scene.time_step) return result;
+    std::unique_ptr<Backend> finer = at_finer_step(backend, file, share);
+    if (!finer) return result;
+    Rollout flight = rollout(*finer, gains, options);
+    if (!diverged(flight)) return {std::move(finer), std::move(flight)};
+  }
+  return result;
 }
 
 RefineSummary refine_on(std::string_view name, const SceneFile& file,

@@ -3,6 +3,7 @@
 #include <nuno/backend.h>
 #include <nuno/optimize.h>
 #include <nuno/refine.h>
+#include <nuno/rollout.h>
 #include <nuno/scene_file.h>
 
 #include <array>
@@ -84,6 +85,21 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
 /// The same with a step that is short enough for `gain` as well, which messages call `option`.
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
                                                double gain, std::string_view option = "--alpha");
+
+/// The backend's engine at `share` of its step, for the scene; null where its flight would take
+/// hours.
+std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& file, double share);
+
+/// A rollout, and the engine that flew it.
+struct ResolvedRollout {
+  std::unique_ptr<Backend> finer;  ///< null: the one that was asked
+  Rollout flight;
+};
+
+/// A rollout of the scene on its backend. Where it diverges, and the scene leaves the step to the
+/// engine, it is flown at a quarter and at a sixteenth of the step.
+ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
+                                 const RolloutOptions& options = {});
 
 /// Makes the engine called `name` for the scene's problem corrected elsewhere, see refine.h; `name`
 /// and `file` must outlive it.
