@@ -73,13 +73,14 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
   // The flight, and those that judge it: its twin, and at half of its step.
   const LongWork told(asked, file.scene.name, 4);
   const double frames = out.empty() ? 0 : file.scene.frames_per_second;
-  auto [finer, flight] =
+  ResolvedRollout flown =
       resolved_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
+  Rollout& flight = flown.flight;
   if (diverged(flight)) {
     report_divergence(file.path, asked, flight);
     return ExitStatus::diverged;
   }
-  const Backend& backend = finer ? *finer : asked;
+  const Backend& backend = flown.finer ? *flown.finer : asked;
   if (const auto half = at_finer_step(backend, file, 0.5)) {
     flight.step_error = step_error(*half, flight);
   }
@@ -94,7 +95,7 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
     }
   }
   print_summary(people(out), file.scene.name, backend, flight, growth);
-  if (finer) {
+  if (flown.finer) {
     fmt::print(people(out), "  {:<17} it diverges in {} steps of {}\n", "shorter steps",
                asked.steps(), duration(asked.time_step()));
   }
