@@ -38,13 +38,6 @@ HWY_INLINE SheetArrays<Real> arrays_of(SheetState& state) {
           state.velocities.empty() ? nullptr : vectors(state.velocities)};
 }
 
-void kick_all(const SheetPlan& plan, const double* forces, SheetState& state) {
-  slow_kick(plan, state.first, arrays_of(state), [&](Index i) NUNO_INLINE_LAMBDA {
-    const double* force = forces + 3 * plan.user_index[static_cast<std::size_t>(i)];
-    return Vec3<Real>{force[0], force[1], force[2]};
-  });
-}
-
 void swing_all(const SheetPlan& plan, SheetState& state, SubstepTape* tape) {
   spring_substeps(plan, state.first, arrays_of(state), [&](Index n) {
     if (tape == nullptr) return;
@@ -110,11 +103,12 @@ void swing_back_all(const SheetPlan& plan, bool first, const SubstepTape& tape,
 
 // ---- hinges, one a lane ---------------------------------------------------------------------
 
+constexpr std::size_t most_lanes = HWY_MAX_BYTES / sizeof(double);
+
 /// Values at one corner of as many hinges as a pack has lanes; those beyond the last repeat it.
 HWY_INLINE Vec3<Pack> at_corner(const SheetPlan& plan, Index hinge, Index corner,
                                 const Vec3<Real>* values) {
-  constexpr std::size_t most = HWY_MAX_BYTES / sizeof(double);
-  double x[most], y[most], z[most];
+  double x[most_lanes], y[most_lanes], z[most_lanes];
   for (Index lane = 0; lane < lanes_of(Pack()); ++lane) {
     const Index h = std::min(hinge + lane, plan.hinges() - 1);
     const Vec3<Real>& value = values[plan.corners[static_cast<std::size_t>(4 * h + corner)]];
@@ -125,39 +119,29 @@ HWY_INLINE Vec3<Pack> at_corner(const SheetPlan& plan, Index hinge, Index corner
   return {load_lanes(x, Pack()), load_lanes(y, Pack()), load_lanes(z, Pack())};
 }
 
-HWY_INLINE Pack of_hinges(const std::vector<double>& values, Index hinge) {
-  double lanes[HWY_MAX_BYTES / sizeof(double)];
+HWY_INLINE Pack of_hinges(const double* values, Index hinges, Index hinge) {
+  double lanes[most_lanes];
   for (Index lane = 0; lane < lanes_of(Pack()); ++lane) {
-    lanes[lane] = values[std::min(static_cast<std::size_t>(hinge + lane), values.size() - 1)];
+    lanes[lane] = values[std::min(hinge + lane, hinges - 1)];
   }
   return load_lanes(lanes, Pack());
+}
+HWY_INLINE Pack of_hinges(const std::vector<double>& values, Index hinge) {
+  return of_hinges(values.data(), static_cast<Index>(values.size()), hinge);
+}
+
+HWY_INLINE void write_hinges(Pack values, Index hinges, Index hinge, double* to) {
+  double lanes[most_lanes];
+  store_lanes(values, lanes);
+  std::copy_n(lanes, std::min(lanes_of(Pack()), hinges - hinge), to + hinge);
 }
 
 HWY_INLINE Vec3<Dual<Pack>> along(const Vec3<Pack>& value, const Vec3<Pack>& direction) {
   return {{value.x, direction.x}, {value.y, direction.y}, {value.z, direction.z}};
 }
 
-HWY_INLINE void add_at_corner(const SheetPlan& plan, Index hinge, Index corner,
-                              const Vec3<Dual<Pack>>& change, double sign, Vec3<Real>* to) {
-  constexpr std::size_t most = HWY_MAX_BYTES / sizeof(double);
-  double x[most], y[most], z[most];
-  store_lanes(change.x.derivative, x);
-  store_lanes(change.y.derivative, y);
-  store_lanes(change.z.derivative, z);
-  const Index end = std::min(lanes_of(Pack()), plan.hinges() - hinge);
-  for (Index lane = 0; lane < end; ++lane) {
-    Vec3<Real>& sum = to[plan.corners[static_cast<std::size_t>(4 * (hinge + lane) + corner)]];
-    sum = sum + sign * Vec3<Real>{x[lane], y[lane], z[lane]};
-  }
-}
-
-HWY_INLINE void write_hinges(Pack values, Index hinge, std::vector<double>& to) {
-  double lanes[HWY_MAX_BYTES / sizeof(double)];
-  store_lanes(values, lanes);
-  const auto first = static_cast<std::size_t>(hinge);
-  const std::size_t count = std::min(static_cast<std::size_t>(lanes_of(Pack())), to.size() - first);
-  std::copy_n(lanes, count, to.begin() + hinge);
-}
+HWY_INLINE Pack to_be_added(Pack force) { return force; }
+HWY_INLINE Pack to_be_added(Dual<Pack> force) { return force.derivative; }
 
 template <typename T>
 HWY_INLINE HingeShape<T> shape_at(const SheetPlan& plan, Index hinge, const Vec3<T> (&corners)[4]) {
@@ -169,42 +153,83 @@ HWY_INLINE HingeShape<T> shape_at(const SheetPlan& plan, Index hinge, const Vec3
           of_hinges(plan.rest_sine, hinge)};
 }
 
-void turns_at_all(const SheetPlan& plan, const std::vector<double>& positions,
-                  std::vector<double>& turn) {
-  const Vec3<Real>* x = vectors(positions);
-  for (Index h = 0; h < plan.hinges(); h += lanes_of(Pack())) {
-    const Vec3<Pack> corners[4] = {at_corner(plan, h, 0, x), at_corner(plan, h, 1, x),
-                                   at_corner(plan, h, 2, x), at_corner(plan, h, 3, x)};
-    write_hinges(shape_at(plan, h, corners).turn, h, turn);
+template <typename T>
+HWY_INLINE void store_vectors(const Vec3<T>& vectors, double (&lanes)[3][most_lanes]) {
+  store_lanes(to_be_added(vectors.x), lanes[0]);
+  store_lanes(to_be_added(vectors.y), lanes[1]);
+  store_lanes(to_be_added(vectors.z), lanes[2]);
+}
+
+/// Adds the forces that hinges of this shape and moment give, a hinge after another; of dual
+/// numbers, their derivatives.
+template <typename T>
+HWY_INLINE void add_forces(const SheetPlan& plan, Index hinge, const HingeShape<T>& shape,
+                           const T& moment, Vec3<Real>* to) {
+  const HingeForces<T> on(shape, moment);
+  double a[3][most_lanes], minus_b[3][most_lanes], c[3][most_lanes], d[3][most_lanes];
+  store_vectors(on.a, a);
+  store_vectors(on.minus_b, minus_b);
+  store_vectors(on.c, c);
+  store_vectors(on.d, d);
+  const auto of_lane = [](const double(&values)[3][most_lanes], Index lane) NUNO_INLINE_LAMBDA {
+    return Vec3<Real>{values[0][lane], values[1][lane], values[2][lane]};
+  };
+  const Index end = std::min(lanes_of(Pack()), plan.hinges() - hinge);
+  const Index* corners = plan.corners.data() + 4 * hinge;
+  for (Index lane = 0; lane < end; ++lane, corners += 4) {
+    to[corners[0]] = to[corners[0]] + of_lane(a, lane);
+    to[corners[1]] = to[corners[1]] - of_lane(minus_b, lane);
+    to[corners[2]] = to[corners[2]] + of_lane(c, lane);
+    to[corners[3]] = to[corners[3]] + of_lane(d, lane);
   }
 }
 
-/// The corners at x, moved along w, and the hinges' forces there.
-struct HingesAlong {
-  HingeShape<Dual<Pack>> shape;
+HWY_INLINE HingeShape<Pack> shape_at(const SheetPlan& plan, Index hinge, const Vec3<Real>* x) {
+  const Vec3<Pack> corners[4] = {at_corner(plan, hinge, 0, x), at_corner(plan, hinge, 1, x),
+                                 at_corner(plan, hinge, 2, x), at_corner(plan, hinge, 3, x)};
+  return shape_at(plan, hinge, corners);
+}
 
-  HWY_INLINE HingesAlong(const SheetPlan& plan, Index hinge, const Vec3<Real>* x,
-                         const Vec3<Real>* w)
-      : shape(shape_of(plan, hinge, x, w)) {}
-
-  static HWY_INLINE HingeShape<Dual<Pack>> shape_of(const SheetPlan& plan, Index hinge,
-                                                    const Vec3<Real>* x, const Vec3<Real>* w) {
-    const auto corner = [&](Index k) NUNO_INLINE_LAMBDA {
-      return along(at_corner(plan, hinge, k, x), at_corner(plan, hinge, k, w));
-    };
-    const Vec3<Dual<Pack>> corners[4] = {corner(0), corner(1), corner(2), corner(3)};
-    return shape_at(plan, hinge, corners);
+/// What hinge_kick does, bit for bit.
+void hinge_kick_in_packs(const SheetPlan& plan, double kicks, const SheetArrays<Real>& sheet) {
+  for (Index h = 0; h < plan.hinges(); h += lanes_of(Pack())) {
+    const HingeShape<Pack> shape = shape_at(plan, h, sheet.x);
+    Pack moment = Pack(kicks) * of_hinges(plan.hinge_spring, h) * shape.turn;
+    if (!plan.hinge_dashpot.empty()) {
+      const Pack before = of_hinges(sheet.turn, plan.hinges(), h);
+      moment = mul_add(Pack(kicks) * of_hinges(plan.hinge_dashpot, h),
+                       within_half_turn(shape.turn - before), moment);
+      write_hinges(shape.turn, plan.hinges(), h, sheet.turn);
+    }
+    add_forces(plan, h, shape, moment, sheet.u);
   }
-};
+}
 
-/// Adds the derivatives of the forces that hinges of this shape and moment give.
-HWY_INLINE void add_forces(const SheetPlan& plan, Index hinge, const HingeShape<Dual<Pack>>& shape,
-                           const Dual<Pack>& moment, Vec3<Real>* to) {
-  const HingeForces<Dual<Pack>> on(shape, moment);
-  add_at_corner(plan, hinge, 0, on.a, 1, to);
-  add_at_corner(plan, hinge, 1, on.minus_b, -1, to);
-  add_at_corner(plan, hinge, 2, on.c, 1, to);
-  add_at_corner(plan, hinge, 3, on.d, 1, to);
+void kick_all(const SheetPlan& plan, const double* forces, SheetState& state) {
+  slow_kick(
+      plan, state.first, arrays_of(state),
+      [&](Index i) NUNO_INLINE_LAMBDA {
+        const double* force = forces + 3 * plan.user_index[static_cast<std::size_t>(i)];
+        return Vec3<Real>{force[0], force[1], force[2]};
+      },
+      hinge_kick_in_packs);
+}
+
+void turns_at_all(const SheetPlan& plan, const std::vector<double>& positions,
+                  std::vector<double>& turn) {
+  for (Index h = 0; h < plan.hinges(); h += lanes_of(Pack())) {
+    write_hinges(shape_at(plan, h, vectors(positions)).turn, plan.hinges(), h, turn.data());
+  }
+}
+
+/// The corners at x, moved along w.
+HWY_INLINE HingeShape<Dual<Pack>> shape_along(const SheetPlan& plan, Index hinge,
+                                              const Vec3<Real>* x, const Vec3<Real>* w) {
+  const auto corner = [&](Index k) NUNO_INLINE_LAMBDA {
+    return along(at_corner(plan, hinge, k, x), at_corner(plan, hinge, k, w));
+  };
+  const Vec3<Dual<Pack>> corners[4] = {corner(0), corner(1), corner(2), corner(3)};
+  return shape_at(plan, hinge, corners);
 }
 
 template <bool damped>
@@ -212,8 +237,9 @@ void hinges_back(const SheetPlan& plan, bool first, const std::vector<double>& p
                  const std::vector<double>& turn, SheetCotangent& cotangent) {
   const Pack kicks(kicks_of_step(plan, first));
   for (Index h = 0; h < plan.hinges(); h += lanes_of(Pack())) {
-    const HingesAlong hinges(plan, h, vectors(positions), vectors(cotangent.impulse));
-    const Dual<Pack>& angle = hinges.shape.turn;
+    const HingeShape<Dual<Pack>> shape =
+        shape_along(plan, h, vectors(positions), vectors(cotangent.impulse));
+    const Dual<Pack>& angle = shape.turn;
     Dual<Pack> moment = scale(kicks * of_hinges(plan.hinge_spring, h), angle);
     if constexpr (damped) {
       const Pack dashpot = kicks * of_hinges(plan.hinge_dashpot, h);
@@ -221,9 +247,9 @@ void hinges_back(const SheetPlan& plan, bool first, const std::vector<double>& p
       const Pack by_angle = dashpot * angle.derivative;
       moment.value = mul_add(dashpot, within_half_turn(angle.value - before), moment.value);
       moment.derivative = moment.derivative + by_angle - turn_bar;
-      write_hinges(by_angle, h, cotangent.turn);
+      write_hinges(by_angle, plan.hinges(), h, cotangent.turn.data());
     }
-    add_forces(plan, h, hinges.shape, moment, vectors(cotangent.positions));
+    add_forces(plan, h, shape, moment, vectors(cotangent.positions));
   }
 }
 
@@ -236,11 +262,9 @@ void kick_back_all(const SheetPlan& plan, bool first, const std::vector<double>&
 /// `begin` puts turns a step back, θ − H·∇θ·v: what they gain is a moment's force.
 void begin_turns_back(const SheetPlan& plan, const std::vector<double>& positions,
                       const SheetCotangent& cotangent, std::vector<double>& velocities) {
-  const std::vector<double> none(positions.size(), 0.0);
   for (Index h = 0; h < plan.hinges(); h += lanes_of(Pack())) {
-    const HingesAlong hinges(plan, h, vectors(positions), vectors(none));
     const Pack moment = Pack(plan.time_step) * of_hinges(cotangent.turn, h);
-    add_forces(plan, h, hinges.shape, {Pack(0.0), moment}, vectors(velocities));
+    add_forces(plan, h, shape_at(plan, h, vectors(positions)), moment, vectors(velocities));
   }
 }
 

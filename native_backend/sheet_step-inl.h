@@ -209,9 +209,8 @@ struct HingeForces {
   }
 };
 
-/// The hinges kick for `kicks` of a full kick of a substep.
 template <bool damped, typename T>
-HWY_INLINE void hinge_kick(const SheetPlan& plan, double kicks, const SheetArrays<T>& sheet) {
+HWY_INLINE void hinge_kick_of(const SheetPlan& plan, double kicks, const SheetArrays<T>& sheet) {
   const Index* corners = plan.corners.data();
   for (Index h = 0; h < plan.hinges(); ++h, corners += 4) {
     const auto at = static_cast<std::size_t>(h);
@@ -232,6 +231,16 @@ HWY_INLINE void hinge_kick(const SheetPlan& plan, double kicks, const SheetArray
   }
 }
 
+/// The hinges kick for `kicks` of a full kick of a substep.
+template <typename T>
+HWY_INLINE void hinge_kick(const SheetPlan& plan, double kicks, const SheetArrays<T>& sheet) {
+  if (plan.hinge_dashpot.empty()) {
+    hinge_kick_of<false>(plan, kicks, sheet);
+  } else {
+    hinge_kick_of<true>(plan, kicks, sheet);
+  }
+}
+
 /// How much of the velocity that control is told is that of a step's last substep.
 HWY_INLINE double end_share(const SheetPlan& plan) {
   return 0.5 + 0.5 / static_cast<double>(plan.substeps);
@@ -242,19 +251,16 @@ HWY_INLINE double kicks_of_step(const SheetPlan& plan, bool first) {
   return (first ? plan.first_share : 1) * static_cast<double>(plan.substeps);
 }
 
-/// The slow forces of a step: hinges and `external(i)`, that on particle i of the plan's order.
-template <typename T, typename External>
+/// The slow forces of a step: `external(i)`, that on particle i of the plan's order, and what
+/// `hinges` kick.
+template <typename T, typename External, typename Hinges>
 HWY_INLINE void slow_kick(const SheetPlan& plan, bool first, const SheetArrays<T>& sheet,
-                          External&& external) {
+                          External&& external, Hinges&& hinges) {
   const double kicks = kicks_of_step(plan, first);
   for (Index i = 0; i < plan.particles; ++i) {
     sheet.u[i] = scale_add(kicks, external(i), sheet.u[i]);
   }
-  if (plan.hinge_dashpot.empty()) {
-    hinge_kick<false>(plan, kicks, sheet);
-  } else {
-    hinge_kick<true>(plan, kicks, sheet);
-  }
+  hinges(plan, kicks, sheet);
   if (sheet.velocity == nullptr) return;
   for (Index i = 0; i < plan.particles; ++i) {
     sheet.velocity[i] = scale(1 - end_share(plan), velocity_of(plan, i, sheet.u[i]));
@@ -290,7 +296,7 @@ HWY_INLINE void spring_substeps(const SheetPlan& plan, bool first, const SheetAr
 template <typename T, typename External>
 HWY_INLINE void advance_sheet(const SheetPlan& plan, bool first, const SheetArrays<T>& sheet,
                               External&& external) {
-  slow_kick(plan, first, sheet, external);
+  slow_kick(plan, first, sheet, external, hinge_kick<T>);
   spring_substeps(plan, first, sheet, [](Index) {});
 }
 
