@@ -85,6 +85,15 @@ void add_limit(CLI::App& command, const char* name, std::optional<double>& limit
       ->type_name("X");
 }
 
+void add_refine(CLI::App& command, bool& refine) {
+  command.add_flag("--refine", refine,
+                   "Then turn the motion, and the launch along it, until the cloth\n"
+                   "arrives on the target exactly, or as near as it can and is worth\n"
+                   "it; a chain at the least effort. With a limit, as near as the\n"
+                   "limit asks or lets. At a gain of its own; best with a damped\n"
+                   "\"morph\", see below");
+}
+
 void add_error_limit(CLI::App& command, std::optional<double>& limit) {
   add_limit(command, "--error-limit", limit,
             "The gain of least control effort whose error is at most X\n"
@@ -170,11 +179,7 @@ Action add_optimize(CLI::App& command) {
   add_any_backend(command, options->backend);
   add_optimizer(command, *options);
   add_coefficients(command, options->coefficients);
-  command.add_flag("--refine", options->refine,
-                   "Then turn the motion, and the launch along it, until the cloth\n"
-                   "arrives on the target at the least effort; with a limit, as\n"
-                   "near as the limit asks or lets. At a gain of its own; best\n"
-                   "with a damped \"morph\", see below");
+  add_refine(command, options->refine);
   command.add_flag("--robust", options->robust,
                    "Prefer a gain whose answer is not fragile: the error is the mean\n"
                    "over five starts, four of them perturbed by 0.1 % of the length");
@@ -218,6 +223,7 @@ Action add_throw(CLI::App& command) {
   command.get_option("--frames-per-second")
       ->default_str(fmt::format("{}", options->frames_per_second));
   add_error_limit(command, options->error_limit);
+  add_refine(command, options->refine);
   command.add_flag("--settle", options->settle, "The cloth comes to rest on the target");
   command.footer(
       "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"

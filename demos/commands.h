@@ -69,6 +69,7 @@ struct ThrowOptions {
   std::string backend = "native";     ///< one of backend_names
   double frames_per_second = 24;      ///< of the animation [1/s], > 0
   bool settle = false;                ///< the cloth comes to rest on the target
+  bool refine = false;                ///< as of the search
   std::optional<double> error_limit;  ///< as of the search
   std::string out;                    ///< as of the others
   AnimationOptions animation;

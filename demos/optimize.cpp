@@ -76,6 +76,9 @@ bool is_better(const Rollout& a, const Rollout& b, const OptimizeOptions& option
                                         : a.error.mean < b.error.mean;
 }
 
+/// What refining takes, in flights; a sheet takes a dozen or two.
+constexpr double flights_of_refinement = 25;
+
 RefineOptions limits_of(const OptimizeOptions& options) {
   RefineOptions limits;
   if (options.error_limit) limits.tolerance = std::max(limits.tolerance, *options.error_limit);
@@ -105,11 +108,13 @@ void print_search(std::FILE* summary, const Optimization& found, double length) 
   }
   if (found.refinement) {
     const RefineSummary& refined = *found.refinement;
-    fmt::print(summary, "  {:<17} {}{} rollouts and {} Jacobians, {}: {}\n", "refinement",
+    fmt::print(summary, "  {:<17} {}{} rollouts{}, {}: {}\n", "refinement",
                std::isfinite(refined.error_before)
                    ? fmt::format("from {:.4g} % in ", percent * refined.error_before)
                    : "",
-               refined.rollouts, refined.jacobians, duration(refined.seconds), refined.reason);
+               refined.rollouts,
+               refined.jacobians > 0 ? fmt::format(" and {} Jacobians", refined.jacobians) : "",
+               duration(refined.seconds), refined.reason);
   }
 }
 
@@ -150,6 +155,7 @@ ExitStatus optimize(SceneFile file, const OptimizeOptions& options) {
   }
   clear_progress();
   if (options.refine) {
+    const LongWork told(*backend, file.scene.name + ", refinement", flights_of_refinement);
     RefineSummary refined = refine_on(options.backend, file, limits_of(options));
     if (is_better(refined.flight, rollout(*backend, gains), options, file.problem.cloth().size)) {
       found.refinement = std::move(refined);

@@ -73,6 +73,7 @@ ExitStatus throw_cloth(const ThrowOptions& options) {
   search.backend = options.backend;
   search.out = out;
   search.error_limit = options.error_limit;
+  search.refine = options.refine;
   search.animation = options.animation;
   return optimize(std::move(file), search);
 }

@@ -118,9 +118,7 @@ void require_short_tail(const Backend& backend, double tail) {
 }
 
 void require_refinable(const SceneFile& file) {
-  if (file.problem.is_sheet()) {
-    throw InputError(fmt::format("{}: /initial: a sheet is not refined, only a chain", file.path));
-  }
+  if (file.problem.is_sheet()) return;  // takes no jacobian
   constexpr Index most = 128;  // a jacobian takes N times as long as a flight, and N² numbers
   const Index particles = file.problem.cloth().particles();
   if (particles <= most) return;

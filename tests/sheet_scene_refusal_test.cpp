@@ -117,8 +117,6 @@ TEST_F(SheetRefusal, OfWhatSheetsCannotHaveNamesTheSceneAndTheRule) {
                  "box2d does not fly a sheet", "those that do: native, bullet");
   expect_refused({"simulate", chain, "--backend", "bullet"}, "a.json", chain + ": ",
                  "bullet does not fly a chain", "those that do: native, box2d");
-  expect_refused({"optimize", sheet, "--refine"}, "a.json", sheet + ": /initial: ", "",
-                 "a sheet is not refined");
   expect_refused({"optimize", sheet, "--coefficients", "2"}, "a.json", sheet + ": /initial: ", "2",
                  "a sheet takes one gain");
   expect_refused({"simulate", sheet, "--alpha", "1,2,3"}, "a.json", sheet + ": /initial: ", "3",

@@ -37,7 +37,7 @@ void require_few_frames(const SceneFile& file, double more = 0);
 /// Throws InputError where so long a flight after arrival [s] would take hours.
 void require_short_tail(const Backend& backend, double tail);
 
-/// Throws InputError for a scene that refine_on cannot take: a sheet, or too large a chain.
+/// Throws InputError for a scene that refine_on cannot take: too large a chain.
 void require_refinable(const SceneFile& file);
 
 /// Throws InputError if the scene's particles have too few modes for so many groups of them.
@@ -89,7 +89,7 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
 /// and `file` must outlive it.
 MakeBackend backend_maker(std::string_view name, const SceneFile& file);
 
-/// Refines on the native chain at its tracking gain, and transfers the answer to the engine
+/// Refines on the native engine at its tracking gain, and transfers the answer to the engine
 /// called `name`.
 RefineSummary refine_on(std::string_view name, const SceneFile& file,
                         const RefineOptions& options = {});
