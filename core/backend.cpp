@@ -31,6 +31,21 @@ RolloutJacobian Backend::do_jacobian(double, const CorrectionDirections&) const 
   return {};
 }
 
+RolloutGradient Backend::do_gradient(double, const CotangentAt&) const {
+  assert(!"this engine has no gradient");
+  return {};
+}
+
+RolloutGradient Backend::gradient(double gain, const Points& arrival_cotangent) const {
+  return gradient(gain, [&](const Points&) { return RolloutCotangent{arrival_cotangent}; });
+}
+
+RolloutGradient Backend::error_gradient(double gain) const {
+  return gradient(gain, [&](const Points& final) {
+    return RolloutCotangent{error_cotangent(final, problem().target)};
+  });
+}
+
 std::vector<double> Backend::errors(std::span<const double> gains) const {
   return errors(std::vector<Gains>(gains.begin(), gains.end()));
 }

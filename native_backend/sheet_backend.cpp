@@ -5,12 +5,14 @@
 #include <nuno/parallel.h>
 #include <nuno/rollout.h>
 
+#include "sheet_adjoint.h"
 #include "sheet_kernel.h"
 #include "sheet_plan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace nuno::native {
 namespace {
@@ -94,6 +96,18 @@ class SheetBackend final : public Backend {
 
   std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const override {
     return fly_all(gains, cloth().initial, true);
+  }
+
+  bool do_has_gradient() const override { return true; }
+
+  RolloutGradient do_gradient(double gain, const CotangentAt& cotangent_at) const override {
+    const SheetState start = begin(plan_, cloth().initial, launch(*this));
+    RolloutGradient gradient = fly_back(plan_, problem(), start, gain, cotangent_at);
+    if (gradient.launch.size() > 0) {
+      gradient.reference_correction = correction_cotangents(
+          problem(), std::move(gradient.reference_correction), gradient.launch);
+    }
+    return gradient;
   }
 
   std::vector<ErrorSample> fly_all(std::span<const Gains> gains, const Points& initial,
