@@ -12,6 +12,13 @@ double Backend::do_largest_gain() const {
   return 0.04 * cloth().particle_mass / (h * h);
 }
 
+const LowModes& Backend::low_modes(Index groups) const {
+  assert(groups >= 1 && groups <= most_groups);
+  Found& found = low_modes_[static_cast<std::size_t>(groups - 1)];
+  std::call_once(found.once, [&] { found.modes.emplace(problem_, groups); });
+  return *found.modes;
+}
+
 std::vector<double> Backend::do_errors(std::span<const Gains> gains, const Points& initial) const {
   std::vector<double> result(gains.size());
   parallel_for(static_cast<Index>(gains.size()), [&](Index i) {

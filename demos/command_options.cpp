@@ -123,10 +123,15 @@ void add_coefficients(CLI::App& command, Index& coefficients) {
             coefficients = whole_number("--coefficients", text, 1, static_cast<int>(most_groups));
           },
           fmt::format("1 … {} gains, for the shape's waves from long to short, found\n"
-                      "together from the best single gain on: up to {} half waves along\n"
-                      "the cloth, the rest; with more gains up to {}, up to {}",
+                      "together from the best single gain on. Of a chain: up to {} half\n"
+                      "waves along the cloth, the rest; with more gains up to {}, up to\n"
+                      "{}. Of a sheet: its {} … {} longest waves, the rest; with more\n"
+                      "gains up to {} … {}, up to {} … {} of them",
                       most_groups, last_mode_of_group[0], last_mode_of_group[1],
-                      last_mode_of_group[2]))
+                      last_mode_of_group[2], last_modes_of_sheet_group[0].first,
+                      last_modes_of_sheet_group[0].last, last_modes_of_sheet_group[1].first,
+                      last_modes_of_sheet_group[1].last, last_modes_of_sheet_group[2].first,
+                      last_modes_of_sheet_group[2].last))
       ->type_name("K")
       ->default_str(fmt::format("{}", coefficients));
 }

@@ -129,15 +129,14 @@ void require_refinable(const SceneFile& file) {
 
 void require_groups(const SceneFile& file, Index groups) {
   if (groups <= 1) return;
-  if (file.problem.is_sheet()) {
-    throw InputError(
-        fmt::format("{}: /initial: a sheet takes one gain, not {}", file.path, groups));
-  }
-  const Index fewest = fewest_particles(groups), particles = file.problem.cloth().particles();
-  if (particles < fewest) {
-    throw InputError(fmt::format("{}: /particles: {} is not >= {}, the fewest for {} coefficients",
-                                 file.path, particles, fewest, groups));
-  }
+  const bool is_sheet = file.problem.is_sheet();
+  const Index fewest = is_sheet ? fewest_sheet_particles(groups) : fewest_particles(groups);
+  const Index particles = file.problem.cloth().particles();
+  if (particles >= fewest) return;
+  const std::string had = is_sheet ? fmt::format("/initial: {} vertices are", particles)
+                                   : fmt::format("/particles: {} is", particles);
+  throw InputError(fmt::format("{}: {} not >= {}, the fewest for {} coefficients", file.path, had,
+                               fewest, groups));
 }
 
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file) {

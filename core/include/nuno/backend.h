@@ -4,7 +4,10 @@
 #include <nuno/problem.h>
 #include <nuno/rollout_gradient.h>
 
+#include <array>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -89,6 +92,9 @@ class Backend {
   double largest_gain() const { return do_largest_gain(); }
   DragRecurrence drag_recurrence() const { return do_drag_recurrence(); }
 
+  /// The problem's low modes where there are `groups` groups, found when they are first asked for.
+  const LowModes& low_modes(Index groups) const;
+
   /// A cloth at these positions (the initial ones, if they are left out) with these velocities
   /// [d × N], m and m/s. Its edges are at rest at the lengths of the problem's cloth.
   std::unique_ptr<Simulation> start(const Points& positions, const Points& velocities) const {
@@ -168,6 +174,11 @@ class Backend {
   std::string_view name_;
   Problem problem_;
   Index steps_;
+  struct Found {
+    std::once_flag once;
+    std::optional<LowModes> modes;
+  };
+  mutable std::array<Found, most_groups> low_modes_;
 };
 
 }  // namespace nuno
