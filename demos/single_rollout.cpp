@@ -15,7 +15,7 @@ namespace {
 /// The flight as a mesh in motion: a sheet's own, a chain's ribbon.
 Animation animate(const SceneFile& file, const Rollout& flight, const AnimationOptions& options) {
   const Cloth& cloth = file.problem.cloth();
-  const double width = options.ribbon_width.value_or(cloth.size / 10);
+  const double width = options.ribbon_width.value_or(ribbon_width(cloth.size));
   const auto shape = [&](const Points& positions) {
     return file.mesh ? positions : ribbon(positions, width);
   };
@@ -71,7 +71,9 @@ ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains
                const std::string& out, const AnimationOptions& animation,
                const std::optional<Optimization>& optimization) {
   const LongWork told(backend, file.scene.name, 2);  // the flight, and the twin that judges it
-  const double frames = out.empty() ? 0 : file.scene.frames_per_second;
+  // A sheet's are looked at, for where it passes through itself.
+  const bool keeps_frames = !out.empty() || file.problem.is_sheet();
+  const double frames = keeps_frames ? file.scene.frames_per_second : 0;
   const Rollout flight =
       rollout(backend, gains, {.frames_per_second = frames, .tail = animation.tail});
   if (diverged(flight)) {
