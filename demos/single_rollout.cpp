@@ -15,7 +15,7 @@ namespace {
 /// The flight as a mesh in motion: a sheet's own, a chain's ribbon.
 Animation animate(const SceneFile& file, const Rollout& flight, const AnimationOptions& options) {
   const Cloth& cloth = file.problem.cloth();
-  const double width = options.ribbon_width.value_or(cloth.size / 10);
+  const double width = options.ribbon_width.value_or(ribbon_width(cloth.size));
   const auto shape = [&](const Points& positions) {
     return file.mesh ? positions : ribbon(positions, width);
   };
@@ -72,7 +72,9 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
                const std::optional<Optimization>& optimization) {
   // The flight, and those that judge it: its twin, and at half of its step.
   const LongWork told(asked, file.scene.name, 4);
-  const double frames = out.empty() ? 0 : file.scene.frames_per_second;
+  // A sheet's are looked at, for where it passes through itself.
+  const bool keeps_frames = !out.empty() || file.problem.is_sheet();
+  const double frames = keeps_frames ? file.scene.frames_per_second : 0;
   ResolvedRollout flown =
       resolved_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
   Rollout& flight = flown.flight;

@@ -48,6 +48,23 @@ Json history_of(const OptimizeSummary& summary) {
   return history;
 }
 
+Json crossings_head(const FlightCrossings& crossings) {
+  Json result = {{"frames", crossings.frames},
+                 {"crossed_frames", crossings.crossed_frames},
+                 {"grounded_frames", crossings.grounded_frames}};
+  if (crossings.crossed_frames > 0) {
+    result["most_pairs"] = crossings.most_pairs;
+    result["first_time"] = crossings.first_time;
+    result["depth"] = crossings.depth;
+    result["deepest_time"] = crossings.deepest_time;
+  }
+  if (crossings.grounded_frames > 0) {
+    result["ground_time"] = crossings.ground_time;
+    result["ground_depth"] = crossings.ground_depth;
+  }
+  return result;
+}
+
 Json refinement_head(const RefineSummary& refinement) {
   return {{"status", refinement.converged ? "converged" : "nearest"},
           {"reason", refinement.reason},
