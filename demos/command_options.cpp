@@ -105,13 +105,13 @@ void add_optimizer(CLI::App& command, OptimizeOptions& options) {
       .add_option_function<std::string>(
           "--optimizer",
           [&options](const std::string& text) {
-            options.optimizer = word("--optimizer", text, optimizer_names);
+            options.search.optimizer = word("--optimizer", text, optimizer_names);
           },
           fmt::format("Search: {}", fmt::join(optimizer_names, " or ")))
       ->type_name("NAME")
-      ->default_str(options.optimizer);
-  add_error_limit(command, options.error_limit);
-  add_limit(command, "--effort-limit", options.effort_limit,
+      ->default_str(std::string(optimizer_names.front()));
+  add_error_limit(command, options.search.error_limit);
+  add_limit(command, "--effort-limit", options.search.effort_limit,
             "The gain of least error whose control effort is at most X");
 }
 
@@ -134,26 +134,6 @@ void add_coefficients(CLI::App& command, Index& coefficients) {
                       last_modes_of_sheet_group[2].last))
       ->type_name("K")
       ->default_str(fmt::format("{}", coefficients));
-}
-
-void require_compatible(const OptimizeOptions& options, bool names_optimizer) {
-  const bool has_limit = options.error_limit || options.effort_limit;
-  if (options.error_limit && options.effort_limit) {
-    throw CLI::ValidationError("--effort-limit", "does not go with --error-limit");
-  }
-  if (names_optimizer && has_limit) {
-    throw CLI::ValidationError("--optimizer", "does not go with a limit");
-  }
-  if (options.robust && has_limit) {
-    throw CLI::ValidationError("--robust", "does not go with a limit");
-  }
-  if (options.coefficients > 1 && (options.robust || has_limit)) {
-    throw CLI::ValidationError("--coefficients", "does not go with --robust or a limit");
-  }
-  if (options.refine && (options.robust || options.coefficients > 1)) {
-    throw CLI::ValidationError(
-        "--refine", "does not go with --coefficients or --robust, it has a gain of its own");
-  }
 }
 
 }  // namespace
@@ -183,16 +163,16 @@ Action add_optimize(CLI::App& command) {
   add_file(command, "SCENE", options->scene, scene_file);
   add_any_backend(command, options->backend);
   add_optimizer(command, *options);
-  add_coefficients(command, options->coefficients);
-  add_refine(command, options->refine);
-  command.add_flag("--robust", options->robust,
+  add_coefficients(command, options->search.coefficients);
+  add_refine(command, options->search.refine);
+  command.add_flag("--robust", options->search.robust,
                    "Prefer a gain whose answer is not fragile: the error is the mean\n"
                    "over five starts, four of them perturbed by 0.1 % of the length");
   add_time_step(command, options->time_step);
   add_flight_out(command, options->out, options->animation);
   command.footer(which_reference);
-  return [options, &command] {
-    require_compatible(*options, command.count("--optimizer") > 0);
+  return [options] {
+    require_compatible(options->search);
     return optimize(*options);
   };
 }
@@ -207,7 +187,7 @@ Action add_throw(CLI::App& command) {
            "shape key (morph target). May be left out where START has a single\n"
            "shape key, or two lines, initial and target");
   command.get_option("TARGET")->required(false);
-  add_positive(command, "--time", "T", options->arrival_time, "Arrival time [s], > 0");
+  add_positive(command, "--time", "T", options->request.arrival_time, "Arrival time [s], > 0");
   command.get_option("--time")->required();
   add_flight_out(command, options->out, options->animation);
   command
@@ -218,18 +198,18 @@ Action add_throw(CLI::App& command) {
               throw CLI::ValidationError(
                   "--material", fmt::format("\"{}\" is not one of {}", text, material_names()));
             }
-            options->material = text;
+            options->request.material = text;
           },
           fmt::format("Cloth of a mesh: {}", material_names()))
       ->type_name("M");
   add_any_backend(command, options->backend);
-  add_positive(command, "--frames-per-second", "R", options->frames_per_second,
+  add_positive(command, "--frames-per-second", "R", options->request.frames_per_second,
                "Frames of the animation [1/s], > 0");
   command.get_option("--frames-per-second")
-      ->default_str(fmt::format("{}", options->frames_per_second));
+      ->default_str(fmt::format("{}", options->request.frames_per_second));
   add_error_limit(command, options->error_limit);
   add_refine(command, options->refine);
-  command.add_flag("--settle", options->settle, "The cloth comes to rest on the target");
+  command.add_flag("--settle", options->request.settle, "The cloth comes to rest on the target");
   command.footer(
       "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"
       "with \"damping_ratio\": 0.7 in a scene, at the gain of least error at arrival.");

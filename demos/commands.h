@@ -1,6 +1,9 @@
 #pragma once
 
+#include <nuno/flight_file.h>
 #include <nuno/gains.h>
+#include <nuno/search.h>
+#include <nuno/throw_scene.h>
 
 #include <array>
 #include <optional>
@@ -18,15 +21,6 @@ enum class ExitStatus {
   diverged = 3     ///< the simulation diverged
 };
 
-/// How a flight lies in the shot, for a file that holds an animation.
-struct AnimationOptions {
-  Index first_frame = 1;  ///< number of the first frame, ≥ 0
-  Index held_frames = 0;  ///< of the initial shape before the throw, ≥ 0
-  double tail = 0;        ///< flight after arrival, without control [s], ≥ 0
-  std::optional<double>
-      ribbon_width;  ///< of a chain's mesh [m], > 0; absent: a tenth of its length
-};
-
 /// One rollout.
 struct SimulateOptions {
   std::string scene;                ///< a file
@@ -41,16 +35,9 @@ struct SimulateOptions {
 
 /// The search for the best gain.
 struct OptimizeOptions {
-  std::string scene;                 ///< a file
-  std::string backend = "native";    ///< one of backend_names
-  std::string optimizer = "global";  ///< one of optimizer_names
-  /// Least effort within this error, over the cloth's length; takes the optimiser's place.
-  std::optional<double> error_limit;
-  /// Least error within this control effort; takes the optimiser's place.
-  std::optional<double> effort_limit;
-  Index coefficients = 1;           ///< gains by group of modes, 1 … most_groups
-  bool refine = false;              ///< corrects the reference until the cloth is on the target
-  bool robust = false;              ///< the error averaged over small perturbations of the start
+  std::string scene;               ///< a file
+  std::string backend = "native";  ///< one of backend_names
+  SearchOptions search;
   std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
   /// Animation (one of animation_extensions), else result file; "-" for standard output, empty for
   /// none.
@@ -61,14 +48,9 @@ struct OptimizeOptions {
 /// A cloth of two meshes or drawings thrown with what an animator wants: along a damped morph, at
 /// the best gain.
 struct ThrowOptions {
-  /// Mesh files, the same faces in two poses; or curves, see drawing.h. Without a target, `start`
-  /// is a mesh with one morph target, or a drawing with two curves called "initial" and "target".
-  std::string start, target;
-  double arrival_time = 0;            ///< t₀ [s], > 0
-  std::string material;               ///< of a mesh, one of named_materials; empty: default values
+  std::string start, target;  ///< files, see throw_scene; `target` may be empty
+  ThrowRequest request;
   std::string backend = "native";     ///< one of backend_names
-  double frames_per_second = 24;      ///< of the animation [1/s], > 0
-  bool settle = false;                ///< the cloth comes to rest on the target
   bool refine = false;                ///< as of the search
   std::optional<double> error_limit;  ///< as of the search
   std::string out;                    ///< as of the others

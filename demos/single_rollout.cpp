@@ -2,70 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <nuno/animation.h>
 #include <nuno/conditioning.h>
 #include <nuno/output.h>
 #include <nuno/progress.h>
 #include "pictures/summary.h"
 
 namespace nuno {
-
-namespace {
-
-/// The flight as a mesh in motion: a sheet's own, a chain's ribbon.
-Animation animate(const SceneFile& file, const Rollout& flight, const AnimationOptions& options) {
-  const Cloth& cloth = file.problem.cloth();
-  const double width = options.ribbon_width.value_or(ribbon_width(cloth.size));
-  const auto shape = [&](const Points& positions) {
-    return file.mesh ? positions : ribbon(positions, width);
-  };
-  Animation animation{file.scene.name,
-                      file.mesh ? *file.mesh : ribbon_mesh(cloth.initial, width),
-                      file.scene.frames_per_second,
-                      options.first_frame,
-                      {},
-                      {}};
-  for (Index k = 0; k < options.held_frames; ++k) {
-    animation.times.push_back(static_cast<double>(k) / animation.frames_per_second);
-    animation.positions.push_back(shape(cloth.initial));
-  }
-  const double start = static_cast<double>(options.held_frames) / animation.frames_per_second;
-  for (std::size_t k = 0; k < flight.frame_times.size(); ++k) {
-    animation.times.push_back(start + flight.frame_times[k]);
-    animation.positions.push_back(shape(flight.frame_positions[k]));
-  }
-  return animation;
-}
-
-void require_no_animation_options(const AnimationOptions& options) {
-  const AnimationOptions defaults;
-  const char* set = options.first_frame != defaults.first_frame   ? "--first-frame"
-                    : options.held_frames != defaults.held_frames ? "--hold-frames"
-                    : options.tail != defaults.tail               ? "--tail"
-                    : options.ribbon_width                        ? "--ribbon-width"
-                                                                  : nullptr;
-  if (set) {
-    throw InputError(fmt::format("{}: is for an animation: --out with {}", set,
-                                 fmt::join(animation_extensions, ", ")));
-  }
-}
-
-}  // namespace
-
-void require_room(const SceneFile& file, const std::string& out,
-                  const AnimationOptions& animation) {
-  if (is_animation(out)) {
-    require_animation(out, file.scene.arrival_time, file.scene.frames_per_second);
-    if (file.mesh && animation.ribbon_width) {
-      throw InputError(fmt::format("--ribbon-width: is for a chain, and {} is a sheet", file.path));
-    }
-  } else {
-    require_no_animation_options(animation);
-  }
-  const double held = static_cast<double>(animation.held_frames) / file.scene.frames_per_second;
-  if (!out.empty()) require_few_frames(file, held + animation.tail);
-  require_writable(out);
-}
 
 ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
                const std::string& out, const AnimationOptions& animation,
@@ -87,15 +29,7 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
     flight.step_error = step_error(*half, flight);
   }
   const double growth = bounded_sensitivity(backend, flight);
-  if (!out.empty()) {
-    if (is_animation(out)) {
-      write_animation(out, animate(file, flight, animation));
-    } else {
-      write_output(out, [&](std::FILE* result) {
-        write_result(result, file.scene.name, backend, flight, growth, optimization);
-      });
-    }
-  }
+  if (!out.empty()) write_flight(out, file, backend, flight, growth, animation, optimization);
   print_summary(people(out), file.scene.name, backend, flight, growth);
   if (flown.finer) {
     fmt::print(people(out), "  {:<17} it diverges in {} steps of {}\n", "shorter steps",

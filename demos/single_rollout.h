@@ -11,14 +11,9 @@
 
 namespace nuno {
 
-/// Throws InputError or OutputError, before any work is done, where a flight of this scene would
-/// not have room for its frames, in memory and at `out` (none if that is empty), or the kind of
-/// file does not hold what is asked.
-void require_room(const SceneFile& file, const std::string& out, const AnimationOptions& animation);
-
 /// Searches the gain that the options ask for in this scene, in place of the options' own, and
 /// flies at it.
-ExitStatus optimize(SceneFile file, const OptimizeOptions& options);
+ExitStatus optimize(const SceneFile& file, const OptimizeOptions& options);
 
 /// Flies once, writes the result or the animation to `out` and tells people what happened, or why
 /// the flight diverged.

@@ -138,15 +138,25 @@ Json to_json(const Comparison& comparison) {
 
 }  // namespace
 
+std::string optimization_to_json(const Optimization& optimization) {
+  return to_json(optimization).dump();
+}
+
 void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
                   const Rollout& rollout, double sensitivity,
                   const std::optional<Optimization>& optimization) {
+  write_result(file, scene, backend, rollout, sensitivity,
+               optimization ? optimization_to_json(*optimization) : "");
+}
+
+void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+                  const Rollout& rollout, double sensitivity, const std::string& optimization) {
   const Problem& problem = backend.problem();
   Json head = {{"nuno_result", 1}};
   head.update(result_head(scene, backend, rollout));
   head["sensitivity"] = sensitivity;
   if (rollout.gains.count() > 1) head["alphas"] = rollout.gains.groups();
-  if (optimization) head["optimization"] = to_json(*optimization);
+  if (!optimization.empty()) head["optimization"] = Json::parse(optimization);
   if (problem.is_sheet()) {
     head["kind"] = "sheet";
     head["faces"] = problem.sheet().faces;

@@ -136,6 +136,8 @@ std::string_view word_for(const Words& words, Enum value) {
   return std::ranges::find(words, value, [](const auto& word) { return word.value; })->text;
 }
 
+constexpr std::array<std::string_view, 2> shape_fields = {"initial", "target"};
+
 /// A scene's fields take numbers and words, but for its shapes.
 const JsonForm scene_form = {
     .points = {{"/initial", 0},
@@ -218,18 +220,24 @@ struct FieldWriter {
   }
 };
 
-/// Throws InputError for a field that no scene of this form has, or one that is missing.
+/// Throws InputError for a field that no scene of this form has, or one that is missing; `shapes`
+/// are the names of the fields that hold those.
 template <typename SceneOf>
-void require_fields(const Json& json, const Field& root) {
-  std::vector<std::string_view> known = {"nuno_scene", "initial", "target", "cloth"};
+void require_fields(const Json& json, const Field& root,
+                    std::span<const std::string_view> shapes = shape_fields) {
+  std::vector<std::string_view> known = {"nuno_scene"};
+  known.insert(known.end(), shapes.begin(), shapes.end());
+  known.emplace_back("cloth");
   if constexpr (std::is_same_v<SceneOf, SheetScene>) known.emplace_back("material");
   SceneOf scene;
   visit_first(scene, FieldLister{known});
   visit_last(scene, FieldLister{known});
   require_known_fields(json, root, known);
-  for (const char* name : {"nuno_scene", "arrival_time", "initial", "target"}) {
+  std::vector<std::string_view> required = {"nuno_scene", "arrival_time"};
+  required.insert(required.end(), shapes.begin(), shapes.end());
+  for (const std::string_view name : required) {
     if (!json.contains(name)) root.child(name).refuse("is missing; it is required");
-    if (name == std::string_view("nuno_scene") && json[name] != 1) {
+    if (name == "nuno_scene" && json[name] != 1) {
       root.child(name).refuse(fmt::format("{} is not 1", shown(json[name])));
     }
   }
@@ -252,16 +260,21 @@ bool has_meshes(const Json& json) {
   return json.is_object() && json.contains("initial") && json["initial"].is_object();
 }
 
+/// Every field but for the shapes.
+void read_fields(const Json& json, const Field& root, ChainScene& scene) {
+  scene.name = std::filesystem::path(root.source).stem().string();
+  visit_first(scene, FieldReader{json, root});
+  read_material(json, root, scene.cloth);
+  visit_last(scene, FieldReader{json, root});
+}
+
 ChainScene read_chain(const Json& json, const std::string& source) {
   const Field root{source, ""};
   require_fields<ChainScene>(json, root);
   ChainScene scene;
-  scene.name = std::filesystem::path(source).stem().string();
-  visit_first(scene, FieldReader{json, root});
   read(json, root, "initial", scene.initial);
   read(json, root, "target", scene.target);
-  read_material(json, root, scene.cloth);
-  visit_last(scene, FieldReader{json, root});
+  read_fields(json, root, scene);
   validate(scene, source);
   return scene;
 }
@@ -279,32 +292,32 @@ void read_named_material(const Json& json, const Field& root, SheetMaterial& clo
   }
 }
 
-/// All of a sheet's scene but its shapes.
-SheetScene read_sheet_fields(const Json& json, const Field& root) {
-  require_fields<SheetScene>(json, root);
-  SheetScene scene;
+void read_fields(const Json& json, const Field& root, SheetScene& scene) {
   scene.name = std::filesystem::path(root.source).stem().string();
   visit_first(scene, FieldReader{json, root});
   read_named_material(json, root, scene.cloth);
   read_material(json, root, scene.cloth);
   visit_last(scene, FieldReader{json, root});
-  return scene;
 }
 
 SheetInput read_sheet_of_files(const Json& json, const std::string& source,
                                const std::filesystem::path& folder) {
   const Field root{source, ""};
-  SheetScene scene = read_sheet_fields(json, root);
+  require_fields<SheetScene>(json, root);
+  SheetScene scene;
   std::string initial, target;
   read(json, root, "initial", initial);
   read(json, root, "target", target);
+  read_fields(json, root, scene);
   return with_meshes(std::move(scene), (folder / initial).string(), (folder / target).string(),
                      source);
 }
 
 SheetInput read_whole_sheet(const Json& json, const std::string& source) {
   const Field root{source, ""};
-  SheetScene scene = read_sheet_fields(json, root);
+  require_fields<SheetScene>(json, root);
+  SheetScene scene;
+  read_fields(json, root, scene);
   Mesh mesh = mesh_in_scene(json["initial"], root.child("initial"), false);
   scene.initial = mesh.vertices;
   scene.faces = mesh.faces;
@@ -344,6 +357,51 @@ ChainScene parse_scene(const std::string& text, const std::string& source) {
     at.refuse("a mesh file is not read here; give the points of a chain");
   }
   return read_chain(json, source);
+}
+
+AnyScene parse_scene_of(const Shapes& shapes, const std::string& text, const std::string& source) {
+  const Json json = parse_compact(text, source, scene_form);
+  const auto read = [&](auto scene) -> AnyScene {
+    const Field root{source, ""};
+    require_fields<decltype(scene)>(json, root, {});
+    read_fields(json, root, scene);
+    return with_shapes(std::move(scene), shapes, source);
+  };
+  return shapes.faces.empty() ? read(ChainScene()) : read(SheetScene());
+}
+
+ChainScene with_shapes(ChainScene scene, const Shapes& shapes, const std::string& source) {
+  scene.initial = shapes.initial;
+  scene.target = shapes.target;
+  validate(scene, source);
+  return scene;
+}
+
+SheetInput with_shapes(SheetScene scene, const Shapes& shapes, const std::string& source) {
+  scene.initial = shapes.initial;
+  scene.target = shapes.target;
+  scene.faces = shapes.faces;
+  validate(scene, source);
+  Mesh mesh;
+  mesh.vertices = shapes.initial;
+  mesh.faces = shapes.faces;
+  return {std::move(scene), std::move(mesh)};
+}
+
+std::string fields_to_json(const AnyScene& any) {
+  Json json = {{"nuno_scene", 1}};
+  const FieldWriter write{json};
+  const auto add = [&](const auto& scene) {
+    visit_first(scene, write);
+    visit_material(scene.cloth, FieldWriter{json["cloth"]});
+    visit_last(scene, write);
+  };
+  if (const auto* chain = std::get_if<ChainScene>(&any)) {
+    add(*chain);
+  } else {
+    add(std::get<SheetInput>(any).scene);
+  }
+  return json.dump(1);
 }
 
 std::string to_json(const ChainScene& scene) {

@@ -31,6 +31,13 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
                   const Rollout& rollout, double sensitivity,
                   const std::optional<Optimization>& optimization);
 
+/// What such a file says of the search, as JSON text.
+std::string optimization_to_json(const Optimization& optimization);
+
+/// The same result with that text in the place of the search; empty where there was none.
+void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+                  const Rollout& rollout, double sensitivity, const std::string& optimization);
+
 /// compare.json. A point of an alpha curve at which a rollout diverged is null; nothing else is.
 void write_comparisons(std::FILE* file, const std::vector<Comparison>& comparisons);
 

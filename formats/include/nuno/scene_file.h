@@ -15,6 +15,13 @@ struct SheetInput {
 };
 using AnyScene = std::variant<ChainScene, SheetInput>;
 
+/// A cloth's two shapes as points: with faces a sheet's vertices in two poses [3 × N], without them
+/// a chain's drawn lines [2 × any].
+struct Shapes {
+  Points initial, target;
+  Faces faces = {};
+};
+
 /// Reads and validates a scene: a chain's, or, where `initial` and `target` name mesh files or are
 /// meshes themselves, a sheet's; "-" is standard input. A field that is left out has the default
 /// above; an unknown one is an error that names the nearest known one. The scene is named after the
@@ -29,6 +36,17 @@ AnyScene parse_whole_scene(const std::string& text, const std::string& source);
 
 /// The same from JSON text, of a chain alone: a text has no folder that meshes could be in.
 ChainScene parse_scene(const std::string& json, const std::string& source);
+
+/// The same from JSON text without `initial` and `target`, whose place these shapes take.
+AnyScene parse_scene_of(const Shapes& shapes, const std::string& json, const std::string& source);
+
+/// Gives a scene its shapes, and validates it; `source` names the scene in messages.
+ChainScene with_shapes(ChainScene scene, const Shapes& shapes, const std::string& source);
+SheetInput with_shapes(SheetScene scene, const Shapes& shapes, const std::string& source);
+
+/// The fields of a scene but for its shapes, as JSON text; parse_scene_of reads them to the last
+/// bit. The values of a named material stand for its name.
+std::string fields_to_json(const AnyScene& scene);
 
 /// The scene as JSON text, a sheet's with its meshes in it; reading it gives the same scene to the
 /// last bit.

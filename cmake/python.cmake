@@ -1,0 +1,21 @@
+# Whether the Python module can be built here: sets NUNO_HAS_PYTHON, with a word where it cannot.
+# Of several Pythons the first that has numpy is taken, but for one that Python_EXECUTABLE names.
+set(NUNO_HAS_PYTHON OFF)
+if(NOT DEFINED Python_EXECUTABLE)
+  find_program(NUNO_PYTHON_IN_PATH python3)
+  foreach(candidate IN ITEMS ${NUNO_PYTHON_IN_PATH} /usr/bin/python3)
+    execute_process(COMMAND "${candidate}" -c "import numpy" RESULT_VARIABLE failed
+                    OUTPUT_QUIET ERROR_QUIET)
+    if(failed EQUAL 0)
+      set(Python_EXECUTABLE "${candidate}")
+      break()
+    endif()
+  endforeach()
+endif()
+find_package(Python 3.9 QUIET COMPONENTS Interpreter Development.Module)
+find_package(pybind11 2.10 QUIET CONFIG)
+if(Python_FOUND AND pybind11_FOUND)
+  set(NUNO_HAS_PYTHON ON)
+else()
+  message(STATUS "No Python module: it needs Python with its headers, numpy and pybind11")
+endif()
