@@ -59,8 +59,7 @@ Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
 }
 
 Json to_json(const RefineSummary& refinement) {
-  Points at_arrival =
-      Points::Zero(refinement.flight.final.rows(), refinement.flight.final.cols());
+  Points at_arrival = Points::Zero(refinement.flight.final.rows(), refinement.flight.final.cols());
   for (const Points& offset : refinement.reference_correction) at_arrival += offset;
   Json result = refinement_head(refinement);
   result["largest_offset"] = at_arrival.colwise().norm().maxCoeff();
