@@ -14,7 +14,7 @@ namespace nuno::figures {
 namespace {
 
 constexpr double width = 800;
-constexpr double ghost_opacity = 0.35, target_opacity = 0.4, initial_opacity = 0.75,
+constexpr double ghost_opacity = 0.35, target_opacity = 0.7, initial_opacity = 0.75,
                  over_another = 0.7;
 constexpr double margin = 0.06;  // of the data, around it
 

@@ -198,7 +198,7 @@ std::string crossings_note(const ReportScene& scene) {
     const FlightCrossings crossings =
         flight_crossings(flight.times, flight.positions, flight.faces,
                          ground_height(flight.positions.front(), flight.target));
-    note += fmt::format(". On {} it passes through {}", engine_name(flight.backend),
+    note += fmt::format(" On {} it passes through {}.", engine_name(flight.backend),
                         crossing_words(crossings, flight.cloth_length));
   }
   return note;
@@ -209,7 +209,7 @@ std::string section(const ReportScene& scene, std::size_t number) {
   return fmt::format(
       R"(<section class="scene" id="scene-{number}" aria-label="{name}">
 <h2>{name}</h2>
-<p class="note">{particles} particles, {time} s, L = {length} m{crossings}</p>
+<p class="note">{particles} particles, {time} s, L = {length} m.{crossings}</p>
 <div class="panels">
 <div>
 <div class="legend"><span>{key_a}{engine_a}</span><span>{key_b}{engine_b}</span><span><span

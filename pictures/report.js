@@ -155,7 +155,6 @@ class SceneView {
     const { data } = this;
     const stage = this.find('stage');
     stage.replaceChildren();
-    if (this.painter) stage.append(this.painter.canvas);
     let [left, right, bottom, top] = [Infinity, -Infinity, Infinity, -Infinity];
     const add = (shape) => {
       const pose = this.seen(shape);
@@ -207,8 +206,10 @@ class SceneView {
     }
     element(svg, 'text', { x: frame.left + frame.width / 2, y: height - 4, 'text-anchor': 'middle' }, inSpace ? 'across [m]' : 'x [m]');
     element(svg, 'text', { transform: `translate(11 ${frame.top + frame.height / 2}) rotate(-90)`, 'text-anchor': 'middle' }, inSpace ? 'up [m]' : 'y [m]');
-    if (this.painter) this.painter.resize(width, height);
-    else element(svg, 'polyline', { class: 'line band', points: this.points(this.target) });
+    if (this.painter) {
+      stage.append(this.painter.canvas);
+      this.painter.resize(width, height);
+    } else element(svg, 'polyline', { class: 'line band', points: this.points(this.target) });
     this.over = element(svg, 'g', {});
     this.drawOver();
   }
@@ -378,8 +379,9 @@ class SceneView {
     this.find('what').textContent = arrived ? 'error' : 'to the target';
     this.find('what-1').textContent = arrived ? 'error' : 'to the target';
     if (!this.plot) return;
-    if (this.painter) this.paintSheet(poses);
-    else poses.forEach((pose, engine) => this.cloths[engine].setAttribute('points', this.points(pose)));
+    if (!this.painter) {
+      poses.forEach((pose, engine) => this.cloths[engine].setAttribute('points', this.points(pose)));
+    }
     // The ring shows the particle that is furthest apart, while it is.
     const step = 0.5 / 60 + this.end / data.times.length;
     const here = Math.abs(time - this.most.time) <= step;
@@ -388,19 +390,22 @@ class SceneView {
     const i = 2 * this.most.particle;
     this.ring.setAttribute('cx', this.plot.x((first[i] + second[i]) / 2));
     this.ring.setAttribute('cy', this.plot.y((first[i + 1] + second[i + 1]) / 2));
+    if (this.painter) this.paintSheet(poses, here);
     this.now.setAttribute('x1', this.nowX(time));
     this.now.setAttribute('x2', this.nowX(time));
   }
 
-  paintSheet([first, second]) {
+  /// Upon all else of the drawing, the ring too.
+  paintSheet([first, second], hasRing) {
     const [ca, sa] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
     const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
     this.painter.paint([
-      { flat: this.frames(0)[0], color: 'soft', opacity: 0.5 },
-      { flat: this.target, color: 'target', opacity: 0.35 },
+      { flat: this.frames(0)[0], color: 'soft', opacity: 0.6 },
+      { flat: this.target, color: 'target', opacity: 0.6 },
       { flat: second, color: 'b', opacity: 1 },
-      { flat: first, color: 'a', opacity: 0.75, shadow: true },
-    ], { seen: (flat) => this.seen(flat), plot: this.plot, eye: [sa * ce, se, ca * ce] });
+      { flat: first, color: 'a', opacity: 0.85, shadow: true },
+    ], { seen: (flat) => this.seen(flat), plot: this.plot, eye: [sa * ce, se, ca * ce] },
+    hasRing ? ['cx', 'cy'].map((name) => Number(this.ring.getAttribute(name))) : null);
   }
 
   play() {

@@ -7,9 +7,9 @@ const sheetLight = (() => {
   return [x / size, y / size, z / size];
 })();
 const sheetColors = {
-  a: [[76, 99, 214], [122, 139, 222]],
-  b: [[20, 150, 134], [90, 184, 172]],
-  target: [[214, 84, 62], [224, 130, 112]],
+  a: [[0, 118, 182], [84, 162, 206]],
+  b: [[222, 112, 20], [232, 156, 92]],
+  target: [[176, 180, 188], [196, 199, 206]],
   soft: [[140, 144, 154], [164, 168, 176]],
 };
 const shadowSlant = 0.12; // over the height of what throws it
@@ -33,12 +33,19 @@ class SheetPainter {
     [this.width, this.height] = [width, height];
   }
 
-  /// poses: [{flat: x, y, z of each particle, color, opacity, shadow}], from back to front.
-  paint(poses, view) {
+  /// poses: [{flat: x, y, z of each particle, color, opacity, shadow}], from back to front;
+  /// ring: the place of one around what is to be looked at, or null.
+  paint(poses, view, ring = null) {
     const context = this.canvas.getContext('2d');
     context.clearRect(0, 0, this.width, this.height);
     for (const pose of poses) if (pose.shadow) this.shadow(context, pose.flat, view);
     for (const pose of poses) this.cloth(context, pose, view);
+    if (!ring) return;
+    context.strokeStyle = getComputedStyle(this.canvas).color;
+    context.lineWidth = 1.5;
+    context.beginPath();
+    context.arc(...ring, 11, 0, 2 * Math.PI);
+    context.stroke();
   }
 
   /// Places on the canvas, x and y of each particle.
@@ -67,11 +74,12 @@ class SheetPainter {
     const places = this.placed(low, view);
     const shade = this.shade.getContext('2d');
     shade.clearRect(0, 0, this.width, this.height);
-    shade.fillStyle = '#000';
+    shade.fillStyle = shade.strokeStyle = '#000';
     for (const face of this.faces) {
       shade.beginPath();
       this.trace(shade, face, places);
       shade.fill();
+      shade.stroke(); // against gaps
     }
     // Soft: copies of it about its place.
     context.globalAlpha = 0.022;
@@ -85,26 +93,29 @@ class SheetPainter {
   cloth(context, { flat, color, opacity }, view) {
     const places = this.placed(flat, view);
     const { eye } = view;
+    const over = this.shade.getContext('2d'); // opaque there, as a whole translucent here
+    over.clearRect(0, 0, this.width, this.height);
     const near = this.faces.map((face) => {
       let sum = 0;
       for (const i of face) sum += eye[0] * flat[3 * i] + eye[1] * flat[3 * i + 1] + eye[2] * flat[3 * i + 2];
       return sum / face.length;
     });
     const order = near.map((_, f) => f).sort((f, g) => near[f] - near[g]);
-    context.globalAlpha = opacity;
-    context.lineWidth = 0.7;
-    context.lineJoin = 'round';
+    over.lineWidth = 0.7;
+    over.lineJoin = 'round';
     for (const f of order) {
       const normal = this.normal(this.faces[f], flat);
       const dot = (v) => normal[0] * v[0] + normal[1] * v[1] + normal[2] * v[2];
       const lit = 0.62 + 0.5 * Math.abs(dot(sheetLight));
       const base = sheetColors[color][dot(eye) >= 0 ? 0 : 1];
-      context.fillStyle = context.strokeStyle = `rgb(${base.map((x) => Math.min(255, Math.round(lit * x))).join(' ')})`;
-      context.beginPath();
-      this.trace(context, this.faces[f], places);
-      context.fill();
-      if (opacity === 1) context.stroke(); // against gaps
+      over.fillStyle = over.strokeStyle = `rgb(${base.map((x) => Math.min(255, Math.round(lit * x))).join(' ')})`;
+      over.beginPath();
+      this.trace(over, this.faces[f], places);
+      over.fill();
+      over.stroke(); // against gaps
     }
+    context.globalAlpha = opacity;
+    context.drawImage(this.shade, 0, 0, this.width, this.height);
     context.globalAlpha = 1;
   }
 

@@ -21,11 +21,11 @@ struct Named {
 };
 
 // Mid tones of the style sheet's colours, readable on light and on dark paper.
-const std::array<Named, 6> colors = {{{"a", {76, 99, 214}, {122, 139, 222}},
-                                      {"b", {20, 150, 134}, {90, 184, 172}},
-                                      {"c", {190, 120, 30}, {214, 164, 96}},
-                                      {"d", {150, 80, 170}, {184, 132, 198}},
-                                      {"target", {214, 84, 62}, {224, 130, 112}},
+const std::array<Named, 6> colors = {{{"a", {0, 118, 182}, {84, 162, 206}},
+                                      {"b", {222, 112, 20}, {232, 156, 92}},
+                                      {"c", {20, 150, 118}, {90, 184, 160}},
+                                      {"d", {170, 90, 150}, {198, 140, 184}},
+                                      {"target", {176, 180, 188}, {196, 199, 206}},
                                       {"soft", {140, 144, 154}, {164, 168, 176}}}};
 
 const Vec3 light = Vec3(0.35, 0.85, 0.45).normalized();  // to where it comes from

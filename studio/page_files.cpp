@@ -21,6 +21,7 @@
 #include "embedded/preview_js.h"
 #include "embedded/scene_js.h"
 #include "embedded/scores_js.h"
+#include "embedded/shadow_js.h"
 #include "embedded/sheet_js.h"
 #include "embedded/space_js.h"
 #include "embedded/space_stage_js.h"
@@ -36,7 +37,7 @@ namespace nuno::studio {
 namespace {
 
 // A function: constants of other source files are made before main, in an unknown order.
-std::array<PageFile, 28> page_files() {
+std::array<PageFile, 29> page_files() {
   using namespace embedded;
   constexpr std::string_view js = "text/javascript; charset=utf-8";
   return {{{"/", "text/html; charset=utf-8", index_html},
@@ -56,6 +57,7 @@ std::array<PageFile, 28> page_files() {
            {"/preview.js", js, preview_js},
            {"/scene.js", js, scene_js},
            {"/scores.js", js, scores_js},
+           {"/shadow.js", js, shadow_js},
            {"/sheet.js", js, sheet_js},
            {"/space.js", js, space_js},
            {"/space_stage.js", js, space_stage_js},

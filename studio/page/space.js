@@ -3,12 +3,19 @@
 import * as THREE from '/build/three.module.js';
 import { OrbitControls } from '/examples/jsm/controls/OrbitControls.js';
 import { TransformControls } from '/examples/jsm/controls/TransformControls.js';
+import { Shadow } from './shadow.js';
 
-const shadow_pixels = 512;
 const most_pixels = 1.5; // of the canvas, per pixel of the page: finer costs more than it shows
 const force_length = 0.25; // of L, of an arrow as large as a particle's weight
 const longest_force = 1; // of L
 const gizmo_modes = { move: 'translate', turn: 'rotate', scale: 'scale' };
+
+// Without a graphics card smooth edges take most of the time.
+function draws_in_software() {
+  const gl = document.createElement('canvas').getContext('webgl');
+  const info = gl?.getExtension('WEBGL_debug_renderer_info');
+  return !info || /swiftshader|llvmpipe|software/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+}
 
 // Every face as triangles, a fan about its first corner.
 export function triangles_of(faces) {
@@ -57,9 +64,9 @@ class Cloth {
     this.lines.setIndex(this.edges);
   }
 
-  // options: {color, back, opacity, behind: how far it steps back where another lies on it, shadow,
-  //           shaded, wires, colors: per vertex or null}
-  show(shape, { color, back, opacity = 1, behind = 1, shadow = false, shaded = true, wires = false, colors = null }) {
+  // options: {color, back, opacity, behind: how far it steps back where another lies on it, shaded,
+  //           wires, colors: per vertex or null}
+  show(shape, { color, back, opacity = 1, behind = 1, shaded = true, wires = false, colors = null }) {
     this.group.visible = Boolean(shape);
     if (!shape) return;
     shape.forEach((point, i) => this.at.setXYZ(i, ...point));
@@ -82,10 +89,7 @@ class Cloth {
       material.polygonOffset = true; // lines lie upon it
       material.polygonOffsetFactor = material.polygonOffsetUnits = behind;
     }
-    for (const mesh of this.meshes) {
-      mesh.visible = shaded;
-      mesh.castShadow = shadow;
-    }
+    for (const mesh of this.meshes) mesh.visible = shaded;
     this.wires.material.color.set(color);
     this.lines.setIndex(wires || !shaded ? this.edges : this.border);
     this.wires.material.opacity = wires || !shaded ? 0.8 : 0.55;
@@ -97,9 +101,7 @@ export class Space {
   constructor(canvas, on) {
     this.canvas = canvas;
     this.on = on;
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true });
-    this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = THREE.VSMShadowMap;
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: !draws_in_software(), alpha: true });
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(32, 1, 0.01, 1000);
     this.make_lights();
@@ -125,14 +127,9 @@ export class Space {
   make_lights() {
     this.sky = new THREE.HemisphereLight('#ffffff', '#b9bdc9', 0.86);
     this.sun = new THREE.DirectionalLight('#ffffff', 0.36);
-    this.sun.castShadow = true;
-    this.sun.shadow.mapSize.set(shadow_pixels, shadow_pixels);
-    this.sun.shadow.radius = 4;
-    this.scene.add(this.sky, this.sun, this.sun.target);
-    this.floor = new THREE.Mesh(new THREE.PlaneBufferGeometry(1, 1), new THREE.ShadowMaterial({ opacity: 0.22 }));
-    this.floor.rotation.x = -Math.PI / 2;
-    this.floor.receiveShadow = true;
-    this.scene.add(this.floor);
+    this.sun.position.set(0.25, 1, 0.3);
+    this.shadow = new Shadow();
+    this.scene.add(this.sky, this.sun, this.shadow.plane);
   }
 
   make_controls() {
@@ -218,8 +215,7 @@ export class Space {
   lay_ground(box, ground) {
     const size = box.getSize(new THREE.Vector3()), middle = box.getCenter(new THREE.Vector3());
     const wide = Math.max(size.x, size.z, size.y) * 1.6;
-    this.floor.scale.set(wide, wide, 1);
-    this.floor.position.set(middle.x, ground, middle.z);
+    this.shadow.lay(middle, ground, wide);
     const cell = 10 ** Math.floor(Math.log10(wide / 4));
     const cells = Math.max(2, 2 * Math.ceil(wide / cell / 2));
     if (this.grid) this.scene.remove(this.grid);
@@ -228,11 +224,6 @@ export class Space {
     this.grid.material.opacity = 0.22;
     this.grid.position.set(Math.round(middle.x / cell) * cell, ground, Math.round(middle.z / cell) * cell);
     this.scene.add(this.grid);
-    const reach = Math.max(box.max.y - ground, wide) * 1.2;
-    this.sun.position.set(middle.x + 0.25 * reach, ground + reach, middle.z + 0.3 * reach);
-    this.sun.target.position.set(middle.x, ground, middle.z);
-    Object.assign(this.sun.shadow.camera, { left: -0.7 * wide, right: 0.7 * wide, top: 0.7 * wide, bottom: -0.7 * wide, near: 0.05 * reach, far: 3 * reach });
-    this.sun.shadow.camera.updateProjectionMatrix();
   }
 
   // what: {start, target, cloths: [{shape, color, back, stale, errors, forces, ghosts, path, crossed}],
@@ -243,13 +234,13 @@ export class Space {
     this.cloths.forEach((cloth, i) => {
       const shown = what.cloths[i];
       cloth.show(shown?.shape, {
-        color: shown?.color, back: shown?.back, shadow: true, shaded: !what.wires, wires: what.wires,
+        color: shown?.color, back: shown?.back, shaded: !what.wires, wires: what.wires,
         opacity: shown?.stale ? 0.5 : 1, colors: shown?.errors,
       });
     });
     this.draw_lines(what, colors);
     this.draw_crossed(what.cloths, colors);
-    this.floor.material.opacity = colors.shade;
+    this.shadow.draw(what.cloths.map(({ shape }) => shape), this.faces, colors.shade);
     this.gizmo.visible = Boolean(this.gizmo.object) && !what.playing;
     this.renderer.render(this.scene, this.camera);
   }

@@ -9,7 +9,9 @@ const frames_while_moving = 12;
 const frames_per_second = 60;
 const most_frames = 480;
 const most_points = 300000; // of all frames
-const rest = 150; // ms: a hand that holds still so long gets the whole answer
+// A hand that holds still so long gets the whole answer [ms]; a sheet's takes longer, and is not to
+// stand in the way of the next move.
+const rest = () => (is_sheet() ? 400 : 150);
 
 const body = () => JSON.stringify(scene());
 
@@ -67,7 +69,7 @@ export class Throws {
     const after_native = (got) => {
       this.take('native', got);
       this.request_other(live, sampled, run);
-      if (live) this.rest_due = setTimeout(() => this.request(false), rest);
+      if (live) this.rest_due = setTimeout(() => this.request(false), rest());
       else this.request_pareto_front(run);
     };
     if (follows && app.alpha === null && is_sheet()) {
