@@ -6,14 +6,17 @@ include(FetchContent)
 # the package gives to its library, and free of our warnings as a package is. HEADERS names the
 # folder of a library that has only headers: nothing of it is configured or built.
 set(NUNO_FETCHED "")
+set(NUNO_BUILT_WITH "") # names and versions, for --version
 function(nuno_find_or_fetch name version target repository tag)
   cmake_parse_arguments(PARSE_ARGV 5 only "" "HEADERS" "")
   find_package(${name} ${version} QUIET CONFIG)
   if(${name}_FOUND)
+    set(NUNO_BUILT_WITH ${NUNO_BUILT_WITH} "${name} ${${name}_VERSION}" PARENT_SCOPE)
     return()
   endif()
   message(STATUS "No ${name} ${version} here: fetching ${repository} ${tag}")
   set(NUNO_FETCHED ${NUNO_FETCHED} ${name} PARENT_SCOPE)
+  set(NUNO_BUILT_WITH ${NUNO_BUILT_WITH} "${name} ${tag}" PARENT_SCOPE)
   set(project_folder .)
   if(only_HEADERS)
     set(project_folder none) # without a CMakeLists.txt
@@ -100,6 +103,9 @@ nuno_find_or_fetch(box2d 2.4.1 box2d::box2d https://github.com/erincatto/box2d.g
 find_package(PkgConfig QUIET)
 if(PkgConfig_FOUND)
   pkg_check_modules(bullet QUIET IMPORTED_TARGET bullet)
+  if(bullet_FOUND)
+    list(APPEND NUNO_BUILT_WITH "bullet ${bullet_VERSION}")
+  endif()
 endif()
 if(NOT TARGET PkgConfig::bullet)
   set(BUILD_BULLET2_DEMOS OFF)

@@ -38,4 +38,5 @@ install(FILES "${PROJECT_BINARY_DIR}/nuno-config.cmake"
 
 if(TARGET nuno)
   install(TARGETS nuno RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  include(cmake/package.cmake)
 endif()

@@ -43,7 +43,8 @@ ExitStatus fail(ExitStatus status, const std::string& message) {
 }
 
 void describe(CLI::App& app) {
-  app.set_version_flag("--version", "nuno " NUNO_VERSION, "Print the version and exit");
+  app.set_version_flag("--version", "nuno " NUNO_VERSION "\nbuilt with " NUNO_BUILT_WITH,
+                       "Print the version, and what it was built with, and exit");
   app.set_help_flag("--help,-h", "Print this help and exit");
   app.footer(
       "Exit status: 0 done; 1 an output cannot be written; 2 bad usage or a bad scene;\n"

@@ -18,6 +18,7 @@ set(guests
     "httplib.h|studio"
     "box2d/.*|box2d_backend bench"
     "(Bullet|bt|Linear).*|bullet_backend bench"
+    "pybind11/.*|python"
     "hwy/.*|native_backend bench")
 
 set(number 0)

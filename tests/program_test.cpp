@@ -23,7 +23,11 @@ TEST_F(Program, SolvesEverySceneThatComesWithIt) {
 }
 
 TEST_F(Program, HelpsOnItsCommandsAndTellsItsVersion) {
-  EXPECT_TRUE(nuno({"--version"}).out.starts_with("nuno "));
+  const std::string version = nuno({"--version"}).out;
+  EXPECT_TRUE(version.starts_with("nuno "));
+  for (const char* part : {"Eigen3 3.", "box2d ", "bullet "}) {
+    EXPECT_NE(version.find(part), std::string::npos) << part;
+  }
   const Outcome help = nuno({"--help"});
   EXPECT_EQ(help.status, 0);
   for (const std::string command : {"simulate", "optimize", "compare"}) {

@@ -17,7 +17,7 @@ RIGHT = {
     "target": [[2, 1], [2.5, 1.3], [3, 1]],
 }
 
-#: A flight of minutes: a chain at a step that is far too short.
+#: A flight of minutes, on Box2D of half an hour: a chain at a step that is far too short.
 LONG = {**RIGHT, "particles": 1000, "arrival_time": 100, "time_step": 2e-5}
 
 

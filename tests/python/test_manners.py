@@ -93,19 +93,21 @@ class Threads(unittest.TestCase):
 
 
 class CtrlC(unittest.TestCase):
+    """What is not ended takes longer than the time limit of a test."""
+
     def interrupt(self, work):
         threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
         with self.assertRaises(KeyboardInterrupt):
             work()
 
     def test_ends_a_flight(self):
-        self.interrupt(lambda: nuno.simulate(nuno.make_scene(LONG)))
+        self.interrupt(lambda: nuno.simulate(nuno.make_scene(LONG), backend="box2d"))
 
     def test_ends_a_search(self):
         self.interrupt(lambda: nuno.optimize(nuno.make_scene(LONG)))
 
     def test_leaves_a_backend_that_still_flies(self):
-        backend = nuno.Backend(nuno.make_scene(LONG))
+        backend = nuno.Backend(nuno.make_scene(LONG), "box2d")
         self.interrupt(lambda: backend.errors(np.zeros(1)))
         short = nuno.Backend(nuno.make_scene(RIGHT))
         self.assertEqual(short.errors([0]).shape, (1,))
