@@ -56,7 +56,6 @@ function show_refining({ at_rest }) {
   $('refine').disabled = reason !== '';
   $('refine').checked = app.refines && !reason;
   $('refine-set').hidden = !reason || app.engine !== 'native';
-  $('refine-row').hidden = $('refine-text').hidden = is_sheet();
   const { flight } = app.results.native ?? {};
   const refinement = flight?.refinement;
   let text = 'The motion that the cloth follows is corrected, so that it lands on the target.';
@@ -67,7 +66,7 @@ function show_refining({ at_rest }) {
     const landed = refinement.status === 'converged'
       ? 'Landed exactly'
       : `As near as this cloth can come: ${digits((100 * flight.error.mean) / length)} % (${refinement.reason})`;
-    text = `${landed}. The motion was corrected by up to ${metres(refinement.largest_offset)}; without that, ${digits((100 * refinement.error_before) / length)} %. ${refinement.rollouts} throws and ${refinement.jacobians} Jacobians in ${seconds(refinement.seconds)}.`;
+    text = `${landed}. The motion was corrected by up to ${metres(refinement.largest_offset)}; without that, ${digits((100 * refinement.error_before) / length)} %. ${refinement.rollouts} throws${refinement.jacobians > 0 ? ` and ${refinement.jacobians} Jacobians` : ''} in ${seconds(refinement.seconds)}.`;
   } else if (app.refines && !at_rest) {
     text = 'Lands exactly once you let go.';
   }

@@ -45,7 +45,6 @@ export const effort_unit = () => (scene().gravity > 0 ? '× weight' : '× m·L/t
 
 // Why the cloth cannot be corrected off; empty if it can.
 export function no_refining() {
-  if (is_sheet()) return 'It is for a chain: a sheet is not corrected.';
   if (app.engine !== 'native') return 'It is for the native engine alone.';
   if (scene().reference !== 'morph') return 'It needs a control that follows a motion (morph).';
   if (!(scene().damping_ratio > 0)) return 'It needs a control with damping, ζ > 0.';
