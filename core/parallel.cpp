@@ -6,9 +6,18 @@
 #include <mutex>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace nuno {
+namespace {
+
+thread_local bool on_one_core = false;
+
+}  // namespace
+
+OnOneCore::OnOneCore() : before_(std::exchange(on_one_core, true)) {}
+OnOneCore::~OnOneCore() { on_one_core = before_; }
 
 void parallel_for(Index count, const std::function<void(Index)>& work) {
   std::atomic<Index> next = 0;
@@ -24,7 +33,8 @@ void parallel_for(Index count, const std::function<void(Index)>& work) {
     }
   };
   {
-    const auto cores = static_cast<Index>(std::max(1u, std::thread::hardware_concurrency()));
+    const auto cores =
+        on_one_core ? 1 : static_cast<Index>(std::max(1u, std::thread::hardware_concurrency()));
     std::vector<std::jthread> threads;
     try {
       for (Index t = 1; t < std::min(cores, count); ++t) threads.emplace_back(take);

@@ -225,6 +225,43 @@ Action add_compare(CLI::App& command) {
   return [options] { return compare(*options); };
 }
 
+Action add_batch(CLI::App& command) {
+  const auto options = std::make_shared<BatchOptions>();
+  add_files(command, "SHOT", options->shots, "Scene files, or folders of them (*.json)");
+  add_out(command, options->out, "DIR",
+          "Folder of the results, NAME.json of each shot NAME.json. Those that\n"
+          "are there, and newer than their shot, stay as they are");
+  command.get_option("--out")->required();
+  add_any_backend(command, options->backend);
+  command
+      .add_option_function<std::string>(
+          "--jobs",
+          [options](const std::string& text) {
+            options->jobs = whole_number("--jobs", text, 1, 1024);
+          },
+          "Shots at once, a core each; by default as many as there are cores")
+      ->type_name("J");
+  command
+      .add_option_function<std::string>(
+          "--part",
+          [options](const std::string& text) {
+            const std::size_t slash = text.find('/');
+            if (slash == text.npos) {
+              throw CLI::ValidationError("--part", fmt::format("\"{}\" is not I/N", text));
+            }
+            options->parts = whole_number("--part", text.substr(slash + 1), 1, 1'000'000);
+            options->part =
+                whole_number("--part", text.substr(0, slash), 1, static_cast<int>(options->parts));
+          },
+          "The I-th of N parts of the shots, 1 … N, for one of N jobs of a\n"
+          "cluster; the summary is made by a run without it")
+      ->type_name("I/N");
+  command.footer(
+      "Then DIR has summary.csv and report.html as well. A shot that is broken or diverges is\n"
+      "told, and does not stop the others. An interrupted run goes on where it was.");
+  return [options] { return throw_batch(*options); };
+}
+
 Action add_studio(CLI::App& command) {
   const auto options = std::make_shared<StudioOptions>();
   command

@@ -17,6 +17,7 @@ Action add_simulate(CLI::App& command);
 Action add_optimize(CLI::App& command);
 Action add_throw(CLI::App& command);
 Action add_compare(CLI::App& command);
+Action add_batch(CLI::App& command);
 Action add_studio(CLI::App& command);
 Action add_figures(CLI::App& command);
 Action add_render(CLI::App& command);

@@ -63,6 +63,15 @@ struct CompareOptions {
   std::string out;                  ///< folder, "-" for compare.json on standard output, or none
 };
 
+/// Many scenes, each thrown at its best gain.
+struct BatchOptions {
+  std::vector<std::string> shots;  ///< files of scenes, and folders of *.json
+  std::string out;                 ///< folder of the results
+  std::string backend = "native";  ///< one of backend_names
+  Index jobs = 0;                  ///< shots at once, a core each; 0: as many as there are cores
+  Index part = 1, parts = 1;       ///< of the shots: every `parts`-th, from the `part`-th on
+};
+
 /// The paper's figures from our own runs.
 struct FiguresOptions {
   std::string out = "figures";  ///< folder
@@ -86,6 +95,7 @@ ExitStatus simulate(const SimulateOptions& options);
 ExitStatus optimize(const OptimizeOptions& options);
 ExitStatus throw_cloth(const ThrowOptions& options);
 ExitStatus compare(const CompareOptions& options);
+ExitStatus throw_batch(const BatchOptions& options);
 ExitStatus make_figures(const FiguresOptions& options);
 ExitStatus render(const RenderOptions& options);
 

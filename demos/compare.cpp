@@ -14,33 +14,12 @@
 #include "commands.h"
 #include "pictures/report.h"
 #include "pictures/summary.h"
+#include "scene_paths.h"
 
 namespace nuno {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The files among `paths`, and the *.json of the folders among them in alphabetical order.
-std::vector<std::string> scene_paths(const std::vector<std::string>& paths) {
-  std::vector<std::string> result;
-  for (const std::string& path : paths) {
-    std::error_code error;
-    if (!fs::is_directory(path, error)) {
-      result.push_back(path);
-      continue;
-    }
-    std::vector<std::string> inside;
-    for (auto entry = fs::directory_iterator(path, error); !error && entry != fs::end(entry);
-         entry.increment(error)) {
-      if (entry->path().extension() == ".json") inside.push_back(entry->path().string());
-    }
-    if (error) throw InputError(fmt::format("{}: /: {}", path, error.message()));
-    if (inside.empty()) throw InputError(fmt::format("{}: /: is a folder without a *.json", path));
-    std::ranges::sort(inside);
-    result.insert(result.end(), inside.begin(), inside.end());
-  }
-  return result;
-}
 
 // Scene, engine, then what each engine achieved, then how far they are apart.
 constexpr const char* table_row = "{:<{}.32}  {:<6}  {:>11}  {:>9}  {:>8}  {:>11}  {:>8}  {:>12}\n";

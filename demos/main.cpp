@@ -26,12 +26,13 @@ struct Command {
   const char* description;
   Action (*add)(CLI::App&);
 };
-constexpr std::array<Command, 7> commands = {{
+constexpr std::array<Command, 8> commands = {{
     {"simulate", "Throw the cloth once, at one gain", add_simulate},
     {"optimize", "Find the gain with the smallest error at arrival", add_optimize},
     {"throw", "Throw a mesh or a drawn line so that it arrives as another shape of itself",
      add_throw},
     {"compare", "Both engines on the same scenes, side by side", add_compare},
+    {"batch", "Throw many scenes, each at its best gain", add_batch},
     {"studio", "Draw both shapes in the browser, throw, watch", add_studio},
     {"figures", "The paper's figures 5 to 8, from runs of our own", add_figures},
     {"render", "Results as a picture or a film", add_render},

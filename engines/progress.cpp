@@ -68,6 +68,7 @@ LongWork::LongWork(const Backend& backend, const std::string& label, double flig
   if (!(expected > patience)) return;
   const std::string announcement =
       fmt::format("{}: this takes about {:.0f} s on {}", label, expected, backend.name());
+  const SignalsHeld by_the_teller;  // or one would end the program while a file is written
   try {
     teller_ = std::jthread(tell, announcement, label, expected);
   } catch (const std::system_error&) {  // the machine has no thread for it

@@ -36,23 +36,6 @@ extern "C" void say_and_end(int signal) {
   _exit(1);
 }
 
-/// The signals that end a program wait while this lives, so that none leaves a temporary file.
-class SignalsHeld {
- public:
-  SignalsHeld() {
-    sigset_t held;
-    sigemptyset(&held);
-    for (const int signal : ending_signals) sigaddset(&held, signal);
-    sigprocmask(SIG_BLOCK, &held, &before_);
-  }
-  ~SignalsHeld() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsHeld(const SignalsHeld&) = delete;
-  SignalsHeld& operator=(const SignalsHeld&) = delete;
-
- private:
-  sigset_t before_;
-};
-
 /// A new file beside `target`, gone with this object unless it has taken the target's place.
 class TemporaryFile {
  public:
@@ -160,6 +143,15 @@ void handle_signals() {
   std::signal(SIGQUIT, say_and_end);
   std::signal(SIGXCPU, say_and_end);
 }
+
+SignalsHeld::SignalsHeld() {
+  sigset_t held;
+  sigemptyset(&held);
+  for (const int signal : ending_signals) sigaddset(&held, signal);
+  pthread_sigmask(SIG_BLOCK, &held, &before_);
+}
+
+SignalsHeld::~SignalsHeld() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 void require_writable(const std::string& path) {
   if (path.empty() || path == "-") return;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace nuno {
@@ -26,6 +27,12 @@ TEST(Parallel, GivesAnExceptionOnceTheOthersHaveStopped) {
   EXPECT_THROW(parallel_for(1'000'000, work), std::runtime_error);
   EXPECT_EQ(begun, ended + 1);
   EXPECT_LT(begun, 1'000'000);
+}
+
+TEST(Parallel, StaysOnItsThreadWhereThatSharesTheCores) {
+  const OnOneCore alone;
+  const auto here = std::this_thread::get_id();
+  parallel_for(100, [&](Index) { EXPECT_EQ(std::this_thread::get_id(), here); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -59,6 +60,24 @@ inline Json read_json(const fs::path& path) { return Json::parse(read_text(path)
 
 inline bool is_one_line(const std::string& text) {
   return !text.empty() && text.find('\n') == text.size() - 1;
+}
+
+/// A text without what each run makes anew: how long it took.
+inline std::string without_seconds(const std::string& text) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::string word = "\"seconds\":";
+    const std::size_t found = std::min(text.find(word, at), text.size());
+    result.append(text, at, found - at);
+    at = found == text.size() ? found : text.find_first_of(",}", found);
+  }
+  return result;
+}
+
+/// A number that the environment may wish larger, for a run that is to be thorough once.
+inline int wished(const char* variable, int otherwise) {
+  const char* const text = std::getenv(variable);
+  return text ? std::atoi(text) : otherwise;
 }
 
 /// Whether a program that ours runs is there.

@@ -158,8 +158,8 @@ std::vector<BadCommand> bad_commands() {
       {"NoCommand", {}, "nuno: a command is missing; see nuno --help"},
       {"UnknownCommand",
        {"simulat"},
-       "nuno: \"simulat\" is not one of simulate, optimize, throw, compare, studio, figures, "
-       "render"},
+       "nuno: \"simulat\" is not one of simulate, optimize, throw, compare, batch, studio, "
+       "figures, render"},
       {"UnknownGlobalOption", {"--bogus"}, "--bogus: is not a known option"},
       {"NoScene", {"simulate"}, "SCENE: is missing; it is required"},
       {"NoSceneToCompare", {"compare"}, "SCENE: is missing; it is required"},

@@ -10,4 +10,17 @@ namespace nuno {
 /// done. An exception of one of them is thrown here, once the others have stopped.
 void parallel_for(Index count, const std::function<void(Index)>& work);
 
+/// While it lives, parallel_for on this thread does its work on this thread alone: for one of
+/// several who share the cores already.
+class OnOneCore {
+ public:
+  OnOneCore();
+  ~OnOneCore();
+  OnOneCore(const OnOneCore&) = delete;
+  OnOneCore& operator=(const OnOneCore&) = delete;
+
+ private:
+  bool before_;
+};
+
 }  // namespace nuno

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -24,6 +25,20 @@ class OutputError : public std::runtime_error {
 /// that cannot be written, not a silent death; and of the signals that end a program, none does so
 /// without a word or, see write_output, with half a file.
 void handle_signals();
+
+/// The signals that end a program wait while this lives, for this thread and those that it starts
+/// meanwhile, which hold them for good: so none ends the program while another thread writes a
+/// file.
+class SignalsHeld {
+ public:
+  SignalsHeld();
+  ~SignalsHeld();
+  SignalsHeld(const SignalsHeld&) = delete;
+  SignalsHeld& operator=(const SignalsHeld&) = delete;
+
+ private:
+  sigset_t before_;
+};
 
 /// Throws OutputError if `path` cannot be written, before the work that it shall hold is done.
 /// Leaves what is there as it is.

@@ -1,0 +1,129 @@
+// Every command that writes, killed at random moments: an output is the old file or the new one,
+// and nothing else is left but by what cannot be caught.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "program.h"
+
+namespace nuno {
+namespace {
+
+constexpr int few_moments = 4;  // at which each command is killed; NUNO_MOMENTS: others
+
+struct Command {
+  const char* name;
+  std::vector<std::string> arguments;  ///< SCENE, RESULT and OUT stand for paths
+  const char* needs = "";              ///< a program that it runs
+};
+
+const std::vector<Command> commands = {
+    {"Simulate", {"simulate", "SCENE", "--out", "OUT/result.json"}},
+    {"Optimize", {"optimize", "SCENE", "--out", "OUT/flight.glb"}},
+    {"Refine", {"optimize", "SCENE", "--refine", "--out", "OUT/flight.usda"}},
+    {"Throw", {"throw", "DRAWING", "--time", "0.5", "--out", "OUT/frame.####.obj"}},
+    {"ThrowOfASheet", {"throw", "MESH", "MESH", "--time", "0.5", "--out", "OUT/cloth.pc2"}},
+    {"Compare", {"compare", "SCENE", "--out", "OUT"}},
+    {"RenderSvg", {"render", "RESULT", "--out", "OUT/flight.svg"}},
+    {"RenderPng", {"render", "RESULT", "--out", "OUT/flight.png"}, "rsvg-convert"},
+    {"RenderFilm", {"render", "RESULT", "--out", "OUT/flight.mp4"}, "ffmpeg"},
+    {"Figures", {"figures", "--out", "OUT"}, "rsvg-convert"},
+};
+
+void PrintTo(const Command& command, std::ostream* out) { *out << command.name; }
+
+class Interrupted : public Program, public testing::WithParamInterface<Command> {
+ protected:
+  using Files = std::map<std::string, std::string>;  ///< what is in them, by path
+
+  Files files() const {
+    Files result;
+    for (const auto& entry : fs::recursive_directory_iterator(in_folder("outputs"))) {
+      if (entry.is_directory()) continue;
+      result[fs::relative(entry.path(), in_folder("outputs"))] =
+          without_seconds(read_text(entry.path()));
+    }
+    return result;
+  }
+
+  std::vector<std::string> arguments() {
+    Json scene = right_scene();
+    scene["frames_per_second"] = 2000;  // the file takes its time
+    write_text(in_folder("scene.json"), scene.dump());
+    write_text(in_folder("mesh.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nf 1 3 2\nf 2 3 4\n");
+    write_text(in_folder("drawing.svg"),
+               R"(<svg xmlns="http://www.w3.org/2000/svg"><path id="initial" d="M0 0H90"/>)"
+               R"(<path id="target" d="M200 0q40 -30 80 0"/></svg>)");
+    std::vector<std::string> words = GetParam().arguments;
+    for (std::string& word : words) {
+      if (word == "SCENE") word = in_folder("scene.json");
+      if (word == "MESH") word = in_folder("mesh.obj");
+      if (word == "DRAWING") word = in_folder("drawing.svg");
+      if (word == "RESULT") word = in_folder("result.json");
+      if (word.starts_with("OUT")) word.replace(0, 3, in_folder("outputs").string());
+    }
+    if (GetParam().arguments[1] == "RESULT") {
+      EXPECT_EQ(
+          nuno({"optimize", scenes / "letter-z.json", "--out", in_folder("result.json")}).status,
+          0);
+    }
+    return words;
+  }
+};
+
+TEST_P(Interrupted, LeavesTheOldFileOrTheNew) {
+  if (*GetParam().needs && !is_installed(GetParam().needs)) {
+    GTEST_SKIP() << GetParam().needs << " is not installed";
+  }
+  const std::vector<std::string> words = arguments();
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(nuno(words).status, 0);
+  const std::chrono::duration<double> whole = std::chrono::steady_clock::now() - start;
+  const Files fresh = files();
+  ASSERT_FALSE(fresh.empty());
+
+  std::mt19937 random(7);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same moments each time
+  std::uniform_real_distribution<double> moment(0, 1.1 * whole.count());
+  constexpr std::array signals = {SIGTERM, SIGINT, SIGKILL};
+  const int count = wished("NUNO_MOMENTS", few_moments);
+  int ended = 0;
+  for (int i = 0; i < count; ++i) {
+    for (const auto& [name, text] : fresh) write_text(output(name), "old");
+    const int signal = signals[random() % signals.size()];
+    const Process process(words, in_folder("stdout"), in_folder("stderr"));
+    std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
+    process.send(signal);
+    const int status = process.wait();
+    EXPECT_TRUE(status == 0 || status == 1 || status == -signal) << status;
+    ended += status != 0;
+    for (const auto& [name, text] : files()) {
+      const auto wanted = fresh.find(name);
+      if (wanted == fresh.end()) {
+        EXPECT_EQ(signal, SIGKILL) << "leaves " << name;
+        fs::remove(output(name));
+      } else if (text != "old") {
+        EXPECT_EQ(text, wanted->second) << name << " is neither old nor new";
+      }
+    }
+  }
+  std::printf("%s, which takes %.2f s: killed at %d of %d moments\n", GetParam().name,
+              whole.count(), ended, count);
+}
+
+INSTANTIATE_TEST_SUITE_P(Commands, Interrupted, testing::ValuesIn(commands),
+                         [](const auto& command) { return std::string(command.param.name); });
+
+}  // namespace
+}  // namespace nuno
