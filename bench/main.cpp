@@ -37,7 +37,7 @@ void run(const Options& options) {
   Report report(machine);
   try {
     for (const auto section : {throughput, gradient, threads, optimum, work_precision, long_rollout,
-                               sheet_throughput, sheet_optimum, minima}) {
+                               sheet_throughput, sheet_optimum, sheet_gradient, minima}) {
       section(report, options);
     }
   } catch (const Refusal&) {

@@ -30,6 +30,8 @@ void work_precision(Report& report, const Options& options);
 void sheet_throughput(Report& report, const Options& options);
 /// Time to a sheet's best gain and to its refined answer; growth with particles and stiffness.
 void sheet_optimum(Report& report, const Options& options);
+/// The gradient of E of a sheet by its adjoint over E alone: time and memory.
+void sheet_gradient(Report& report, const Options& options);
 /// 100 000 particles, 1000 steps: time and memory.
 void long_rollout(Report& report, const Options& options);
 
