@@ -6,8 +6,10 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <stdexcept>
+#include <vector>
 
 #include "peers.h"
 
@@ -77,7 +79,68 @@ Points fly(const Problem& problem, Index steps, const mjModel* model, mjData* da
   return positions;
 }
 
+/// A square sheet as MuJoCo's own composite: particles on three slides each, tendons of fixed
+/// length along the edges, elastic ones across. Equal masses; conjugate gradients, as its own
+/// examples of cloth take them.
+std::string sheet_xml(const Sheet& sheet, Index columns, double h) {
+  return fmt::format(
+      "<mujoco><size njmax='{}' nconmax='1'/><option timestep='{}' gravity='0 0 {}' solver='CG'>"
+      "<flag contact='disable'/></option><worldbody><body><composite type='grid' "
+      "count='{} {} 1' spacing='{}'><joint kind='main'/><tendon kind='main'/>"
+      "<tendon kind='shear' stiffness='{}'/><geom type='sphere' size='0.001' mass='{}'/>"
+      "</composite></body></worldbody></mujoco>",
+      10 * sheet.particles(), h, -sheet.gravity, columns, columns, sheet.rest_length[0],
+      sheet.material.shear_stiffness, sheet.particle_mass);
+}
+
+/// The sheet's vertex that is at this place of the composite's flat grid.
+Index vertex_at(const double* flat, Index columns, double spacing) {
+  const auto middle = static_cast<double>(columns / 2);  // of its numbering
+  const auto column = static_cast<Index>(std::lround(flat[0] / spacing + middle));
+  const auto row = static_cast<Index>(std::lround(flat[1] / spacing + middle));
+  return row * columns + column;
+}
+
+/// x to the right and z up.
+Points fly_sheet(const Problem& problem, Index steps, const mjModel* model, mjData* data) {
+  const Sheet& sheet = problem.sheet();
+  const auto columns = static_cast<Index>(std::lround(std::sqrt(sheet.particles())));
+  mj_resetData(model, data);
+  mj_kinematics(model, data);
+  const auto place = [&](Index body) { return data->xpos + 3 * body; };
+  const Index first = model->nbody - sheet.particles();
+  std::vector<Index> vertices;  // of the composite's particles
+  for (Index body = first; body < model->nbody; ++body) {
+    vertices.push_back(vertex_at(place(body), columns, sheet.rest_length[0]));
+    const auto x = sheet.initial.col(vertices.back());
+    double* slides = data->qpos + model->jnt_qposadr[model->body_jntadr[body]];
+    slides[0] = x[0] - place(body)[0];
+    slides[1] = x[2] - place(body)[1];
+    slides[2] = x[1] - place(body)[2];
+  }
+  for (Index step = 0; step < steps; ++step) mj_step(model, data);
+  mj_kinematics(model, data);
+  Points positions(3, sheet.particles());
+  for (Index body = first; body < model->nbody; ++body) {
+    const double* x = place(body);
+    positions.col(vertices[static_cast<std::size_t>(body - first)]) << x[0], x[2], x[1];
+  }
+  return positions;
+}
+
 }  // namespace
+
+std::vector<Peer> mujoco_sheet_peers(const Problem& problem) {
+  constexpr Index steps = 400;
+  const auto columns = static_cast<Index>(std::lround(std::sqrt(problem.cloth().particles())));
+  const double h = problem.arrival_time / static_cast<double>(steps);
+  const std::shared_ptr<mjModel> model = compile(sheet_xml(problem.sheet(), columns, h));
+  const std::shared_ptr<mjData> data(mj_makeData(model.get()), mj_deleteData);
+  return {{fmt::format("MuJoCo {}, composite grid of tendons", mj_versionString()),
+           std::numeric_limits<double>::infinity(),
+           [&problem, model, data] { return fly_sheet(problem, steps, model.get(), data.get()); },
+           steps}};
+}
 
 std::vector<Peer> mujoco_peers(const Problem& problem, Index steps) {
   const double h = problem.arrival_time / static_cast<double>(steps);

@@ -19,6 +19,17 @@ std::vector<Peer> peers(const Problem& problem, Index steps) {
   return result;
 }
 
+std::vector<Peer> sheet_peers([[maybe_unused]] const Problem& problem) {
+  std::vector<Peer> result;
+#ifdef NUNO_BENCH_BULLET
+  for (Peer& peer : bullet_sheet_peers(problem)) result.push_back(std::move(peer));
+#endif
+#ifdef NUNO_BENCH_MUJOCO
+  for (Peer& peer : mujoco_sheet_peers(problem)) result.push_back(std::move(peer));
+#endif
+  return result;
+}
+
 std::vector<Rod> rods(const Chain& chain) {
   std::vector<Rod> result;
   const Index count = chain.rest_length.size();

@@ -7,7 +7,7 @@
 namespace nuno::bench {
 
 struct Options {
-  bool quick = false;  ///< 40 s for everything instead of minutes
+  bool quick = false;  ///< 80 s for everything instead of minutes
   std::string output;  ///< directory for bench.json and bench.csv; empty: neither
   std::string scenes;  ///< directory of scene files
 };
@@ -26,6 +26,10 @@ void optimum(Report& report, const Options& options);
 void minima(Report& report, const Options& options);
 /// How exact E(α) is at which cost.
 void work_precision(Report& report, const Options& options);
+/// ns per particle-step of sheets, on native, on Bullet and of the peers' own cloth.
+void sheet_throughput(Report& report, const Options& options);
+/// Time to a sheet's best gain and to its refined answer; growth with particles and stiffness.
+void sheet_optimum(Report& report, const Options& options);
 /// 100 000 particles, 1000 steps: time and memory.
 void long_rollout(Report& report, const Options& options);
 

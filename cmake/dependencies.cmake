@@ -127,6 +127,15 @@ if(NOT TARGET PkgConfig::bullet)
 endif()
 
 if(NUNO_BUILD_DEMOS)
+  # What draws sheets on the studio's page, embedded in the program as the page is.
+  find_path(NUNO_THREE build/three.module.js PATHS /usr/share/javascript/three NO_DEFAULT_PATH)
+  mark_as_advanced(NUNO_THREE)
+  if(NOT NUNO_THREE)
+    message(STATUS "No three.js here: fetching npm's three 0.111.0")
+    FetchContent_Declare(three URL https://registry.npmjs.org/three/-/three-0.111.0.tgz)
+    FetchContent_MakeAvailable(three)
+    set(NUNO_THREE "${three_SOURCE_DIR}")
+  endif()
   nuno_find_or_fetch(
     CLI11 2.1 CLI11::CLI11 https://github.com/CLIUtils/CLI11.git v2.1.2 HEADERS include)
 endif()

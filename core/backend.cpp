@@ -12,6 +12,13 @@ double Backend::do_largest_gain() const {
   return 0.04 * cloth().particle_mass / (h * h);
 }
 
+const LowModes& Backend::low_modes(Index groups) const {
+  assert(groups >= 1 && groups <= most_groups);
+  Found& found = low_modes_[static_cast<std::size_t>(groups - 1)];
+  std::call_once(found.once, [&] { found.modes.emplace(problem_, groups); });
+  return *found.modes;
+}
+
 std::vector<double> Backend::do_errors(std::span<const Gains> gains, const Points& initial) const {
   std::vector<double> result(gains.size());
   parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
@@ -29,6 +36,21 @@ std::vector<ErrorSample> Backend::do_error_samples(std::span<const Gains>) const
 RolloutJacobian Backend::do_jacobian(double, const CorrectionDirections&) const {
   assert(!"this engine has no jacobian");
   return {};
+}
+
+RolloutGradient Backend::do_gradient(double, const CotangentAt&) const {
+  assert(!"this engine has no gradient");
+  return {};
+}
+
+RolloutGradient Backend::gradient(double gain, const Points& arrival_cotangent) const {
+  return gradient(gain, [&](const Points&) { return RolloutCotangent{arrival_cotangent}; });
+}
+
+RolloutGradient Backend::error_gradient(double gain) const {
+  return gradient(gain, [&](const Points& final) {
+    return RolloutCotangent{error_cotangent(final, problem().target)};
+  });
 }
 
 std::vector<double> Backend::errors(std::span<const double> gains) const {

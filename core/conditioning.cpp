@@ -1,9 +1,12 @@
 #include <nuno/conditioning.h>
 
+#include <nuno/error.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace nuno {
 
@@ -22,6 +25,27 @@ std::string fragility(double sensitivity) {
   return fmt::format(
       "fragile: a change at the start grows {:.3g}-fold; engines and steps need not agree",
       sensitivity);
+}
+
+double step_error(const Backend& finer, const Rollout& flight) {
+  const Rollout there = rollout(finer, flight.gains);
+  if (diverged(there)) return std::numeric_limits<double>::infinity();
+  const Cloth& cloth = finer.cloth();
+  return shape_difference(cloth, flight.final, there.final).mean / cloth.size;
+}
+
+// Second order: half of the step leaves a quarter of the error. A large one is not in proportion
+// yet, and says no more than that the step is too long.
+std::string coarseness(double step_error, double time_step) {
+  if (!(step_error > largest_step_error)) return {};
+  constexpr double in_proportion = 0.1;
+  const double halvings = std::max(
+      1.0, std::ceil(std::log2(std::min(step_error, in_proportion) / largest_step_error) / 2));
+  return fmt::format(
+      "coarse: half of the step moves the end shape by {:.2g} % of L; a --time-step "
+      "of {:.2g} s {}",
+      100 * step_error, time_step / std::exp2(halvings),
+      step_error > in_proportion ? "or less is worth a try" : "resolves it");
 }
 
 std::string divergence_message(const std::string& scene_path, const Backend& backend,

@@ -16,6 +16,16 @@ ArrivalError arrival_error(const Points& final, const Points& target) {
   return {distance.mean(), distance.maxCoeff(), (centroid(final) - centroid(target)).norm()};
 }
 
+Points error_cotangent(const Points& final, const Points& target) {
+  Points cotangent = final - target;
+  const auto particles = static_cast<double>(final.cols());
+  for (auto each : cotangent.colwise()) {
+    const double distance = each.norm();
+    if (distance > 0) each /= distance * particles;
+  }
+  return cotangent;
+}
+
 ShapeDifference shape_difference(const Cloth& cloth, const Points& a, const Points& b) {
   const ArrivalError difference = arrival_error(cloth.shape_of(a), cloth.shape_of(b));
   return {difference.mean, difference.max};

@@ -1,5 +1,9 @@
 #include <nuno/gains.h>
 
+#include <nuno/mesh_fault.h>
+#include <nuno/problem.h>
+#include <nuno/sheet_modes.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -36,6 +40,46 @@ Gains Gains::split(Index count) const {
 Index fewest_particles(Index groups) {
   assert(groups >= 1 && groups <= most_groups);
   return groups == 1 ? 2 : last_mode_of_group[static_cast<std::size_t>(groups - 2)] + 2;
+}
+
+Index fewest_sheet_particles(Index groups) {
+  assert(groups >= 1 && groups <= most_groups);
+  // One mode more, to see where the eigenvalue grows, and the one of the place.
+  return groups == 1 ? smallest_particles
+                     : last_modes_of_sheet_group[static_cast<std::size_t>(groups - 2)].last + 2;
+}
+
+namespace {
+
+/// The last mode of a group, counted from 1, see ModeRange. Of factors that are alike the first,
+/// whatever their rounding.
+Index last_mode(const Vector& eigenvalues, const ModeRange& range) {
+  const auto growth = [&](Index mode) { return eigenvalues[mode] / eigenvalues[mode - 1]; };
+  double largest = 0;
+  for (Index mode = range.first; mode <= range.last; ++mode) {
+    largest = std::max(largest, growth(mode));
+  }
+  constexpr double alike = 1e-6;
+  Index mode = range.first;
+  while (growth(mode) < (1 - alike) * largest) ++mode;
+  return mode;
+}
+
+}  // namespace
+
+LowModes::LowModes(const Problem& problem, Index groups)
+    : LowModes(problem.cloth().particles(), problem.is_sheet() ? 1 : groups) {
+  if (!problem.is_sheet() || groups == 1) return;
+  const Sheet& sheet = problem.sheet();
+  assert(sheet.particles() >= fewest_sheet_particles(groups));
+  const auto bounds =
+      std::span(last_modes_of_sheet_group).first(static_cast<std::size_t>(groups - 1));
+  const SheetModes modes = sheet_modes(sheet, bounds.back().last + 1);
+  for (const ModeRange& range : bounds) {
+    group.resize(static_cast<std::size_t>(last_mode(modes.eigenvalues, range)),
+                 &range - bounds.data());
+  }
+  shapes = modes.shapes.topRows(static_cast<Index>(group.size()));
 }
 
 LowModes::LowModes(Index particles, Index groups) {

@@ -131,4 +131,27 @@ Points launch(const Backend& backend) {
                                                 : velocities;
 }
 
+// Without stretching, velocities are P·v with P = 1 − M⁻¹JᵀA⁻¹J, whose transpose is M·P·M⁻¹, since
+// A is symmetric; two passes are its square.
+std::vector<Points> correction_cotangents(const Problem& problem, std::vector<Points> by_offsets,
+                                          const Points& by_launch) {
+  const Vector& mass = problem.cloth().relative_mass;
+  const auto times = [](const Points& points, const Vector& factors) -> Points {
+    return points.array().rowwise() * factors.transpose().array();
+  };
+  const Points by_rate =
+      problem.launch == Launch::inextensible
+          ? times(without_stretching(problem, times(by_launch, mass.cwiseInverse())), mass)
+          : by_launch;
+  const CorrectionShares rates = correction_rates_at_start(problem.arrival_time);
+  const double particles = static_cast<double>(mass.size());
+  for (std::size_t k = 0; k < by_offsets.size(); ++k) {
+    Points& offset = by_offsets[k];
+    if (rates[k] != 0) offset += rates[k] * by_rate;
+    // The transpose of shape_of.
+    offset -= offset.rowwise().sum() * (mass / particles).transpose();
+  }
+  return by_offsets;
+}
+
 }  // namespace nuno

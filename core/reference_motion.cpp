@@ -1,5 +1,7 @@
 #include <nuno/reference_motion.h>
 
+#include <utility>
+
 namespace nuno {
 namespace {
 
@@ -17,20 +19,27 @@ CorrectionShares correction_shares_at(double time) {
 
 }  // namespace
 
+CorrectionShares correction_rates_at_start(double arrival_time) {
+  CorrectionShares rates;
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    rates[k] = correction_powers[k] == 1 ? 1 / arrival_time : 0;
+  }
+  return rates;
+}
+
 ReferenceMotion::ReferenceMotion(const Problem& problem, double time_step)
     : moves_(problem.reference == Reference::morph),
       time_step_(time_step),
       step_time_(time_step / problem.arrival_time),
-      stop_(problem.stop),
-      relative_mass_(problem.cloth().relative_mass) {
+      stop_(problem.stop) {
+  std::vector<Points> offsets;
   for (const Points& offset : problem.reference_correction) {
-    offsets_.push_back(shape_of(offset, relative_mass_));
+    offsets.push_back(problem.cloth().shape_of(offset));
   }
-  for (std::size_t k = 0; k < correction_powers.size(); ++k) {
-    correction_rates_[k] = correction_powers[k] == 1 ? 1 / problem.arrival_time : 0;
-  }
+  offsets_ = std::make_shared<const std::vector<Points>>(std::move(offsets));
+  correction_rates_ = correction_rates_at_start(problem.arrival_time);
   if (!moves_) {
-    way_ = shape_of(problem.target, relative_mass_);
+    way_ = std::make_shared<const Points>(problem.cloth().shape_of(problem.target));
     velocity_ = Points::Zero(problem.target.rows(), problem.target.cols());
   } else if (problem.is_sheet()) {
     const SheetMorph& morph = way_.emplace<SheetMorph>(problem, step_time_);
@@ -51,7 +60,7 @@ void ReferenceMotion::advance() {
     correction_rates_[k] = (shares[k] - correction_shares_[k]) / time_step_;
   }
   correction_shares_ = shares;
-  if (!moves_ && offsets_.empty()) return;
+  if (!moves_ && offsets_->empty()) return;
 
   const Points before = shape_;
   if (auto* morph = std::get_if<ChainMorph>(&way_)) morph->advance();
@@ -66,13 +75,13 @@ void ReferenceMotion::place_shape() {
   } else if (const auto* sheet = std::get_if<SheetMorph>(&way_)) {
     shape_ = sheet->shape();
   } else {
-    shape_ = std::get<Points>(way_);
+    shape_ = *std::get<std::shared_ptr<const Points>>(way_);
   }
   add_correction(correction_shares_, shape_);
 }
 
 void ReferenceMotion::add_correction(const CorrectionShares& shares, Points& to) const {
-  for (std::size_t k = 0; k < offsets_.size(); ++k) to += shares[k] * offsets_[k];
+  for (std::size_t k = 0; k < offsets_->size(); ++k) to += shares[k] * (*offsets_)[k];
 }
 
 }  // namespace nuno

@@ -8,21 +8,17 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
 
+#include "refinement.h"
 #include "trust_region.h"
 
 namespace nuno {
 namespace {
-
-// Why the work ended, for people.
-constexpr const char* arrived = "arrived within the tolerance";
-constexpr const char* too_much_effort = "no flight of so little effort was found";
 
 /// Shapes to correct the reference by: cosines along the chain, of few waves where they come early
 /// and must not stretch the cloth on its way, and all of them at the last, where it has to arrive.
@@ -59,26 +55,6 @@ std::vector<Points> moved(std::vector<Points> offset, const CorrectionDirections
   }
   return offset;
 }
-
-/// Says whether the flight arrived, within what was allowed.
-void conclude(RefineSummary& summary, double tolerance, double effort_limit) {
-  summary.converged = summary.flight.error.mean <= tolerance;
-  if (summary.converged) summary.reason = arrived;
-  if (summary.flight.control_effort > effort_limit) {
-    summary.converged = false;
-    summary.reason = too_much_effort;
-  }
-}
-
-class Stopwatch {
- public:
-  double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Homotopy from a flight in which effort counts to one that arrives: the weight of the error in
 /// effort² + weight²·error² grows with every step that succeeds.
@@ -139,8 +115,8 @@ class Refinement {
         length_(problem.cloth().size),
         unit_(1 / (length_ * std::sqrt(static_cast<double>(problem.cloth().particles())))),
         directions_(correction_directions(problem.cloth().particles())),
-        summary_(first_flight()),
-        within_reach_(is_within_reach()),
+        summary_(first_flight(problem, gain, make, options)),
+        within_reach_(is_within_reach(problem, make)),
         homotopy_(first_weight(), largest_weight()),
         landing_{has_limit() || !within_reach_ ? 0 : 1e-3 * length_} {}
 
@@ -180,28 +156,6 @@ class Refinement {
     return corrected;
   }
 
-  RefineSummary first_flight() const {
-    RefineSummary summary;
-    summary.reference_correction = problem_.reference_correction;
-    if (summary.reference_correction.empty()) {
-      summary.reference_correction.assign(correction_powers.size(),
-                                          Points::Zero(2, problem_.cloth().particles()));
-    }
-    summary.flight = rollout(*make_(corrected(summary.reference_correction)), gain_);
-    summary.rollouts = 1;
-    summary.error_before = summary.flight.error.mean;
-    summary.reason = fmt::format("{} rounds were not enough", options_.rounds);
-    return summary;
-  }
-
-  /// A cloth that is too long or too short for a segment of the target can be squeezed towards it
-  /// without end.
-  bool is_within_reach() const {
-    constexpr double reachable_mismatch = 1e-6;
-    return assess(*make_(corrected(summary_.reference_correction))).length_mismatch <=
-           reachable_mismatch;
-  }
-
   /// An answer of before is corrected where it stands; a new one starts where effort counts.
   double first_weight() const {
     const double here = summary_.flight.control_effort * length_ / summary_.flight.error.mean;
@@ -209,9 +163,8 @@ class Refinement {
     return std::min(here, has_limit() ? 1.0 : 30.0);
   }
 
-  /// Out of reach, an error of 1e-4·L is worth a particle's weight and no more.
   double largest_weight() const {
-    return within_reach_ || has_limit() ? std::numeric_limits<double>::infinity() : 1e4;
+    return within_reach_ || has_limit() ? std::numeric_limits<double>::infinity() : worth_of_error;
   }
 
   Next stop(const char* reason) {
@@ -288,8 +241,7 @@ class Refinement {
   Next advance(Trial trial, double kept) {
     const bool was_within_limit = is_within_limit(summary_.flight);
     if (was_within_limit && trial.flight.control_effort > options_.effort_limit) {
-      return homotopy_.advance_less() ? Next::round
-                                      : stop("more would take more effort than the limit");
+      return homotopy_.advance_less() ? Next::round : stop(no_more_effort);
     }
     accept(std::move(trial));
     if (was_within_limit || is_within_limit(summary_.flight)) homotopy_.advance();
@@ -332,6 +284,37 @@ class Refinement {
 
 }  // namespace
 
+RefineSummary first_flight(const Problem& problem, double gain, const MakeBackend& make,
+                           const RefineOptions& options) {
+  const Cloth& cloth = problem.cloth();
+  Problem corrected = problem;
+  if (corrected.reference_correction.empty()) {
+    corrected.reference_correction.assign(correction_powers.size(),
+                                          Points::Zero(cloth.dimension(), cloth.particles()));
+  }
+  RefineSummary summary;
+  summary.reference_correction = corrected.reference_correction;
+  summary.flight = rollout(*make(corrected), gain);
+  summary.rollouts = 1;
+  summary.error_before = summary.flight.error.mean;
+  summary.reason = fmt::format("{} rounds were not enough", options.rounds);
+  return summary;
+}
+
+bool is_within_reach(const Problem& problem, const MakeBackend& make) {
+  constexpr double reachable_mismatch = 1e-6;
+  return assess(*make(problem)).length_mismatch <= reachable_mismatch;
+}
+
+void conclude(RefineSummary& summary, double tolerance, double effort_limit) {
+  summary.converged = summary.flight.error.mean <= tolerance;
+  if (summary.converged) summary.reason = arrived;
+  if (summary.flight.control_effort > effort_limit) {
+    summary.converged = false;
+    summary.reason = too_much_effort;
+  }
+}
+
 double tracking_gain(const Backend& backend) {
   // √300 = 17 rad until arrival: what the launch leaves behind has died away by then, and nothing
   // that the engines see differently grows.
@@ -343,7 +326,9 @@ double tracking_gain(const Backend& backend) {
 RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options) {
   const Stopwatch stopwatch;
-  RefineSummary summary = Refinement(problem, gain, make, model, options).run();
+  RefineSummary summary = problem.is_sheet()
+                              ? refine_sheet(problem, gain, make, options)
+                              : Refinement(problem, gain, make, model, options).run();
   summary.seconds = stopwatch.seconds();
   return summary;
 }

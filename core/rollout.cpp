@@ -132,7 +132,7 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
            Rollout& result) {
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
-  const ShapeControl control(problem, gains);
+  const ShapeControl control(problem, gains, backend.low_modes(gains.count()));
   ReferenceMotion reference(problem, h);
   Points forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
   Points pulls = forces;

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <utility>
 
 namespace nuno {
 
@@ -22,12 +23,12 @@ double shape_damping(double damping_ratio, double gain, double particle_mass) {
   return 2 * damping_ratio * std::sqrt(gain * particle_mass);
 }
 
-ShapeControl::ShapeControl(const Problem& problem, const Gains& gains)
+ShapeControl::ShapeControl(const Problem& problem, const Gains& gains, LowModes modes)
     : relative_mass_(problem.cloth().relative_mass),
       pulls_(gains.largest() > 0),
       gain_(gains.rest),
       damping_(shape_damping(problem.damping_ratio, gains.rest, problem.cloth().particle_mass)),
-      modes_(problem.cloth().particles(), gains.count()),
+      modes_(std::move(modes)),
       excess_gain_(modes_.count()),
       excess_damping_(modes_.count()) {
   for (Index j = 0; j < modes_.count(); ++j) {
@@ -49,8 +50,9 @@ void ShapeControl::pull(const ReferenceMotion& reference, const Points& position
   }
   if (modes_.count() == 0) return;
   // Summed in the native kernel's order, so that both agree to the last bit.
-  const Points offset = reference.shape() - shape_of(positions, relative_mass_);
-  const Points lag = reference.velocity() - shape_of(velocities, relative_mass_);
+  const auto mass = relative_mass_.asDiagonal();
+  const Points offset = (reference.shape() - shape_of(positions, relative_mass_)) * mass;
+  const Points lag = (reference.velocity() - shape_of(velocities, relative_mass_)) * mass;
   Points spring = Points::Zero(positions.rows(), modes_.count());
   Points dashpot = spring;
   for (Index i = 0; i < positions.cols(); ++i) {

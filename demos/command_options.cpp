@@ -85,6 +85,15 @@ void add_limit(CLI::App& command, const char* name, std::optional<double>& limit
       ->type_name("X");
 }
 
+void add_refine(CLI::App& command, bool& refine) {
+  command.add_flag("--refine", refine,
+                   "Then turn the motion, and the launch along it, until the cloth\n"
+                   "arrives on the target exactly, or as near as it can and is worth\n"
+                   "it; a chain at the least effort. With a limit, as near as the\n"
+                   "limit asks or lets. At a gain of its own; best with a damped\n"
+                   "\"morph\", see below");
+}
+
 void add_error_limit(CLI::App& command, std::optional<double>& limit) {
   add_limit(command, "--error-limit", limit,
             "The gain of least control effort whose error is at most X\n"
@@ -114,10 +123,15 @@ void add_coefficients(CLI::App& command, Index& coefficients) {
             coefficients = whole_number("--coefficients", text, 1, static_cast<int>(most_groups));
           },
           fmt::format("1 … {} gains, for the shape's waves from long to short, found\n"
-                      "together from the best single gain on: up to {} half waves along\n"
-                      "the cloth, the rest; with more gains up to {}, up to {}",
+                      "together from the best single gain on. Of a chain: up to {} half\n"
+                      "waves along the cloth, the rest; with more gains up to {}, up to\n"
+                      "{}. Of a sheet: its {} … {} longest waves, the rest; with more\n"
+                      "gains up to {} … {}, up to {} … {} of them",
                       most_groups, last_mode_of_group[0], last_mode_of_group[1],
-                      last_mode_of_group[2]))
+                      last_mode_of_group[2], last_modes_of_sheet_group[0].first,
+                      last_modes_of_sheet_group[0].last, last_modes_of_sheet_group[1].first,
+                      last_modes_of_sheet_group[1].last, last_modes_of_sheet_group[2].first,
+                      last_modes_of_sheet_group[2].last))
       ->type_name("K")
       ->default_str(fmt::format("{}", coefficients));
 }
@@ -150,11 +164,7 @@ Action add_optimize(CLI::App& command) {
   add_any_backend(command, options->backend);
   add_optimizer(command, *options);
   add_coefficients(command, options->search.coefficients);
-  command.add_flag("--refine", options->search.refine,
-                   "Then turn the motion, and the launch along it, until the cloth\n"
-                   "arrives on the target at the least effort; with a limit, as\n"
-                   "near as the limit asks or lets. At a gain of its own; best\n"
-                   "with a damped \"morph\", see below");
+  add_refine(command, options->search.refine);
   command.add_flag("--robust", options->search.robust,
                    "Prefer a gain whose answer is not fragile: the error is the mean\n"
                    "over five starts, four of them perturbed by 0.1 % of the length");
@@ -198,6 +208,7 @@ Action add_throw(CLI::App& command) {
   command.get_option("--frames-per-second")
       ->default_str(fmt::format("{}", options->request.frames_per_second));
   add_error_limit(command, options->error_limit);
+  add_refine(command, options->refine);
   command.add_flag("--settle", options->request.settle, "The cloth comes to rest on the target");
   command.footer(
       "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"

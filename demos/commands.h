@@ -51,6 +51,7 @@ struct ThrowOptions {
   std::string start, target;  ///< files, see throw_scene; `target` may be empty
   ThrowRequest request;
   std::string backend = "native";     ///< one of backend_names
+  bool refine = false;                ///< as of the search
   std::optional<double> error_limit;  ///< as of the search
   std::string out;                    ///< as of the others
   AnimationOptions animation;

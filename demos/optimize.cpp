@@ -36,11 +36,13 @@ void print_search(std::FILE* summary, const Optimization& found, double length) 
   }
   if (found.refinement) {
     const RefineSummary& refined = *found.refinement;
-    fmt::print(summary, "  {:<17} {}{} rollouts and {} Jacobians, {}: {}\n", "refinement",
+    fmt::print(summary, "  {:<17} {}{} rollouts{}, {}: {}\n", "refinement",
                std::isfinite(refined.error_before)
                    ? fmt::format("from {:.4g} % in ", percent * refined.error_before)
                    : "",
-               refined.rollouts, refined.jacobians, duration(refined.seconds), refined.reason);
+               refined.rollouts,
+               refined.jacobians > 0 ? fmt::format(" and {} Jacobians", refined.jacobians) : "",
+               duration(refined.seconds), refined.reason);
   }
 }
 

@@ -9,20 +9,32 @@
 
 namespace nuno {
 
-ExitStatus fly(const SceneFile& file, const Backend& backend, const Gains& gains,
+ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
                const std::string& out, const AnimationOptions& animation,
                const std::optional<Optimization>& optimization) {
-  const LongWork told(backend, file.scene.name, 2);  // the flight, and the twin that judges it
-  const double frames = out.empty() ? 0 : file.scene.frames_per_second;
-  const Rollout flight =
-      rollout(backend, gains, {.frames_per_second = frames, .tail = animation.tail});
+  // The flight, and those that judge it: its twin, and at half of its step.
+  const LongWork told(asked, file.scene.name, 4);
+  // A sheet's are looked at, for where it passes through itself.
+  const bool keeps_frames = !out.empty() || file.problem.is_sheet();
+  const double frames = keeps_frames ? file.scene.frames_per_second : 0;
+  ResolvedRollout flown =
+      resolved_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
+  Rollout& flight = flown.flight;
   if (diverged(flight)) {
-    report_divergence(file.path, backend, flight);
+    report_divergence(file.path, asked, flight);
     return ExitStatus::diverged;
+  }
+  const Backend& backend = flown.finer ? *flown.finer : asked;
+  if (const auto half = at_finer_step(backend, file, 0.5)) {
+    flight.step_error = step_error(*half, flight);
   }
   const double growth = bounded_sensitivity(backend, flight);
   if (!out.empty()) write_flight(out, file, backend, flight, growth, animation, optimization);
   print_summary(people(out), file.scene.name, backend, flight, growth);
+  if (flown.finer) {
+    fmt::print(people(out), "  {:<17} it diverges in {} steps of {}\n", "shorter steps",
+               asked.steps(), duration(asked.time_step()));
+  }
   if (file.mesh) {
     for (const std::string& remark : file.mesh->remarks) {
       fmt::print(people(out), "  {:<17} {}\n", "mesh", printable(remark));

@@ -21,6 +21,7 @@ ExitStatus throw_cloth(const ThrowOptions& options) {
   search.backend = options.backend;
   search.out = out;
   search.search.error_limit = options.error_limit;
+  search.search.refine = options.refine;
   search.animation = options.animation;
   return optimize(file, search);
 }

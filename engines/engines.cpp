@@ -4,6 +4,7 @@
 
 #include <nuno/box2d.h>
 #include <nuno/bullet.h>
+#include <nuno/conditioning.h>
 #include <nuno/input.h>
 #include <nuno/native.h>
 
@@ -118,9 +119,7 @@ void require_short_tail(const Backend& backend, double tail) {
 }
 
 void require_refinable(const SceneFile& file) {
-  if (file.problem.is_sheet()) {
-    throw InputError(fmt::format("{}: /initial: a sheet is not refined, only a chain", file.path));
-  }
+  if (file.problem.is_sheet()) return;  // takes no jacobian
   constexpr Index most = 128;  // a jacobian takes N times as long as a flight, and N² numbers
   const Index particles = file.problem.cloth().particles();
   if (particles <= most) return;
@@ -130,15 +129,14 @@ void require_refinable(const SceneFile& file) {
 
 void require_groups(const SceneFile& file, Index groups) {
   if (groups <= 1) return;
-  if (file.problem.is_sheet()) {
-    throw InputError(
-        fmt::format("{}: /initial: a sheet takes one gain, not {}", file.path, groups));
-  }
-  const Index fewest = fewest_particles(groups), particles = file.problem.cloth().particles();
-  if (particles < fewest) {
-    throw InputError(fmt::format("{}: /particles: {} is not >= {}, the fewest for {} coefficients",
-                                 file.path, particles, fewest, groups));
-  }
+  const bool is_sheet = file.problem.is_sheet();
+  const Index fewest = is_sheet ? fewest_sheet_particles(groups) : fewest_particles(groups);
+  const Index particles = file.problem.cloth().particles();
+  if (particles >= fewest) return;
+  const std::string had = is_sheet ? fmt::format("/initial: {} vertices are", particles)
+                                   : fmt::format("/particles: {} is", particles);
+  throw InputError(fmt::format("{}: {} not >= {}, the fewest for {} coefficients", file.path, had,
+                               fewest, groups));
 }
 
 std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& file) {
@@ -167,6 +165,26 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
     backend = make_backend(name, file, file.problem.arrival_time / steps);
   }
   return backend;
+}
+
+std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& file,
+                                       double share) {
+  const double steps = static_cast<double>(backend.steps()) / share;
+  if (too_long(steps, file) || steps > most_steps) return nullptr;
+  return make_backend(backend.name(), file, backend.time_step() * share);
+}
+
+ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
+                                 const RolloutOptions& options) {
+  ResolvedRollout result{nullptr, rollout(backend, gains, options)};
+  for (const double share : {1.0 / 4, 1.0 / 16}) {
+    if (!diverged(result.flight) || file.scene.time_step) return result;
+    std::unique_ptr<Backend> finer = at_finer_step(backend, file, share);
+    if (!finer) return result;
+    Rollout flight = rollout(*finer, gains, options);
+    if (!diverged(flight)) return {std::move(finer), std::move(flight)};
+  }
+  return result;
 }
 
 RefineSummary refine_on(std::string_view name, const SceneFile& file,

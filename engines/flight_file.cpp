@@ -11,7 +11,7 @@ namespace {
 /// The flight as a mesh in motion: a sheet's own, a chain's ribbon.
 Animation animate(const SceneFile& file, const Rollout& flight, const AnimationOptions& options) {
   const Cloth& cloth = file.problem.cloth();
-  const double width = options.ribbon_width.value_or(cloth.size / 10);
+  const double width = options.ribbon_width.value_or(ribbon_width(cloth.size));
   const auto shape = [&](const Points& positions) {
     return file.mesh ? positions : ribbon(positions, width);
   };

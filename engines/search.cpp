@@ -86,9 +86,17 @@ RefineOptions limits_of(const SearchOptions& options) {
   return limits;
 }
 
+/// What refining takes, in flights; a sheet takes a dozen or two.
+constexpr double flights_of_refinement = 25;
+
 /// Puts a refined flight in the place of the answer's, if it is better.
-void refine_answer(const SceneFile& file, const SearchOptions& options, SearchAnswer& answer) {
+void refine_answer(const SceneFile& file, const SearchOptions& options, Telling telling,
+                   SearchAnswer& answer) {
   const std::string_view name = answer.backend->name();
+  std::optional<LongWork> told;
+  if (telling == Telling::progress) {
+    told.emplace(*answer.backend, file.scene.name + ", refinement", flights_of_refinement);
+  }
   RefineSummary refined = refine_on(name, file, limits_of(options));
   const Rollout unrefined = rollout(*answer.backend, answer.gains);
   answer.left_refinement_out =
@@ -132,7 +140,7 @@ SearchAnswer search(const SceneFile& file, std::unique_ptr<Backend> backend,
   }
   if (telling == Telling::progress) clear_progress();
   answer.backend = std::move(backend);
-  if (options.refine) refine_answer(file, options, answer);
+  if (options.refine) refine_answer(file, options, telling, answer);
   return answer;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <utility>
@@ -65,18 +66,23 @@ void require_animation(const std::string& path, double arrival_time, double fram
   }
 }
 
+void write_animation(std::FILE* file, std::string_view extension, const Animation& animation) {
+  if (extension == ".glb") {
+    write_glb(file, animation.name, animation.mesh, animation.times, animation.positions);
+  } else if (extension == ".usda") {
+    write_usda(file, animation);
+  } else {
+    assert(extension == ".pc2" || extension == ".mdd");
+    (extension == ".pc2" ? write_pc2 : write_mdd)(file, in_file_order(animation));
+  }
+}
+
 void write_animation(const std::string& path, const Animation& animation) {
-  if (path.ends_with(".glb")) {
-    write_output(path, [&](std::FILE* file) {
-      write_glb(file, animation.name, animation.mesh, animation.times, animation.positions);
-    });
-  } else if (path.ends_with(".pc2") || path.ends_with(".mdd")) {
-    const Animation in_order = in_file_order(animation);
-    write_output(path, [&](std::FILE* file) {
-      (path.ends_with(".pc2") ? write_pc2 : write_mdd)(file, in_order);
-    });
-  } else if (path.ends_with(".usda")) {
-    write_output(path, [&](std::FILE* file) { write_usda(file, animation); });
+  const auto extension = std::ranges::find_if(
+      animation_extensions, [&](std::string_view end) { return path.ends_with(end); });
+  assert(extension != animation_extensions.end());
+  if (*extension != ".obj") {
+    write_output(path, [&](std::FILE* file) { write_animation(file, *extension, animation); });
   } else {
     for (std::size_t k = 0; k < animation.positions.size(); ++k) {
       write_output(numbered(path, animation.first_frame + static_cast<Index>(k)),

@@ -99,9 +99,16 @@ class Reader {
     if (skipped_ > 0) return true;
     if (levels_.empty()) return false;
     const Level& top = levels_.back();
-    return top.kind == Kind::object
-               ? top.is_dropped
-               : top.kind == Kind::list && top.around < 0 && top.index >= form_.longest_list;
+    if (top.kind == Kind::object) return top.is_dropped;
+    return top.kind == Kind::list && top.around < 0 && top.index >= form_.longest_list &&
+           !is_long_list();
+  }
+
+  /// Whether the list that is open is one of which all items are kept.
+  bool is_long_list() const {
+    if (form_.long_lists.empty()) return false;
+    const std::string text = pointer();
+    return form_.long_lists.contains(std::string_view(text).substr(0, text.rfind('/')));
   }
 
   /// Of the list that comes: how many lists are around its points; negative where it has none.

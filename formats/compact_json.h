@@ -20,6 +20,8 @@ struct JsonForm {
   std::set<std::string_view> wanted = {};
   /// Items that are kept of a list that is none of points; of the others nobody asks.
   std::size_t longest_list = std::numeric_limits<std::size_t>::max();
+  /// Where lists stand of which all items are kept all the same ("/initial/faces").
+  std::set<std::string_view> long_lists = {};
   /// Values in one another; far deeper ones could not even be shown without running out of stack.
   std::size_t deepest = 16;
   std::size_t most_values = std::numeric_limits<std::size_t>::max();  ///< kept or not

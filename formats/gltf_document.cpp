@@ -31,30 +31,11 @@ std::uint32_t word(std::string_view bytes, std::size_t at) {
   return value;
 }
 
-int digit_of_base64(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  return c == '+' ? 62 : c == '/' ? 63 : -1;
-}
-
-std::string from_base64(std::string_view text, const Field& at) {
-  while (text.ends_with('=')) text.remove_suffix(1);
+std::string bytes_of(std::string_view base64, const Field& at) {
   std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 2);
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const int digit = digit_of_base64(text[i]);
-    if (digit < 0) {
-      at.refuse(fmt::format("{} is not base64", shown(Json(std::string(text.substr(i, 20))))));
-    }
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count >= 8) {
-      count -= 8;
-      bytes.push_back(static_cast<char>(bits >> count & 0xff));
-    }
+  const std::size_t end = from_base64(base64, bytes);
+  if (end < base64.size()) {
+    at.refuse(fmt::format("{} is not base64", shown(Json(std::string(base64.substr(end, 20))))));
   }
   return bytes;
 }
@@ -142,8 +123,17 @@ const std::string& GltfItem::text() const {
   return value.get_ref<const std::string&>();
 }
 
-GltfDocument::GltfDocument(const std::string& path) : path_(path) {
-  text_ = read_file(path, path, "a mesh", largest_file);
+GltfDocument::GltfDocument(const std::string& path)
+    : path_(path), text_(read_file(path, path, "a mesh", largest_file)) {
+  parse();
+}
+
+GltfDocument::GltfDocument(std::string bytes, const std::string& path)
+    : path_(path), text_(std::move(bytes)), reads_files_(false) {
+  parse();
+}
+
+void GltfDocument::parse() {
   if (text_.starts_with(magic)) {
     split_container();
   } else {
@@ -208,7 +198,11 @@ std::string GltfDocument::load(const GltfItem& uri) const {
       uri.at.refuse(
           fmt::format("{} is not a data URI in base64", shown(Json(text.substr(0, 100)))));
     }
-    return from_base64(std::string_view(text).substr(comma + 1), uri.at);
+    return bytes_of(std::string_view(text).substr(comma + 1), uri.at);
+  }
+  if (!reads_files_) {
+    uri.at.refuse(
+        fmt::format("{} is a file of its own: export as .glb, all in one", shown(uri.value)));
   }
   const fs::path file = file_inside(path_, text);
   if (file.empty()) {

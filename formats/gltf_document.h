@@ -42,6 +42,8 @@ class GltfDocument {
  public:
   /// Throws InputError.
   explicit GltfDocument(const std::string& path);
+  /// Of the bytes of the file called `path`; no other file is read.
+  GltfDocument(std::string bytes, const std::string& path);
   GltfDocument(const GltfDocument&) = delete;
   GltfDocument& operator=(const GltfDocument&) = delete;
 
@@ -68,7 +70,10 @@ class GltfDocument {
   void put_sparse(const GltfItem& sparse, std::size_t component_type, bool is_normalised,
                   Points& into);
 
+  void parse();
+
   std::string path_, text_;
+  bool reads_files_ = true;
   nlohmann::ordered_json json_;
   std::optional<std::string_view> binary_;  ///< a .glb's own buffer, in text_
   std::map<std::size_t, std::string> loaded_;

@@ -284,10 +284,8 @@ class Reader {
   bool all_textured_ = true;
 };
 
-}  // namespace
-
-Mesh read_gltf(const std::string& path, const std::optional<std::string>& target) {
-  GltfDocument document(path);
+Mesh mesh_of(GltfDocument& document, const std::string& path,
+             const std::optional<std::string>& target) {
   const GltfItem root = document.root();
   require_known_extensions(root);
   const GltfItem meshes = root.child("meshes");
@@ -311,6 +309,19 @@ Mesh read_gltf(const std::string& path, const std::optional<std::string>& target
     result.remarks.push_back(fmt::format("the first of the {} meshes in {}", meshes.size(), path));
   }
   return result;
+}
+
+}  // namespace
+
+Mesh read_gltf(const std::string& path, const std::optional<std::string>& target) {
+  GltfDocument document(path);
+  return mesh_of(document, path, target);
+}
+
+Mesh parse_gltf(const std::string& bytes, const std::string& path,
+                const std::optional<std::string>& target) {
+  GltfDocument document(bytes, path);
+  return mesh_of(document, path, target);
 }
 
 }  // namespace nuno

@@ -22,6 +22,17 @@ bool is_gltf(std::string_view path) {
   return has_extension(path, ".gltf") || has_extension(path, ".glb");
 }
 
+/// Of FILE.glb#NAME.
+std::optional<std::string> morph_target(const std::string& path) {
+  const std::string file = mesh_file(path);
+  return file == path ? std::nullopt : std::optional(path.substr(file.size() + 1));
+}
+
+void require_text_mesh(const std::string& path) {
+  if (has_extension(path, ".obj") || has_extension(path, ".ply")) return;
+  throw InputError(fmt::format("{}: does not end in .obj, .ply, .gltf or .glb", path));
+}
+
 }  // namespace
 
 std::string mesh_file(const std::string& path) {
@@ -32,17 +43,17 @@ std::string mesh_file(const std::string& path) {
 bool may_have_morph_targets(const std::string& path) { return is_gltf(mesh_file(path)); }
 
 Mesh read_mesh(const std::string& path) {
+  if (may_have_morph_targets(path)) return read_gltf(mesh_file(path), morph_target(path));
+  require_text_mesh(path);
+  return parse_mesh(read_file(path, path, "a mesh", largest_file), path);
+}
+
+Mesh parse_mesh(const std::string& bytes, const std::string& path) {
   if (may_have_morph_targets(path)) {
-    const std::string file = mesh_file(path);
-    return read_gltf(file,
-                     file == path ? std::nullopt : std::optional(path.substr(file.size() + 1)));
+    return parse_gltf(bytes, mesh_file(path), morph_target(path));
   }
-  const bool is_obj = has_extension(path, ".obj"), is_ply = has_extension(path, ".ply");
-  if (!is_obj && !is_ply) {
-    throw InputError(fmt::format("{}: does not end in .obj, .ply, .gltf or .glb", path));
-  }
-  const std::string text = read_file(path, path, "a mesh", largest_file);
-  return is_obj ? parse_obj(text, path) : parse_ply(text, path);
+  require_text_mesh(path);
+  return has_extension(path, ".obj") ? parse_obj(bytes, path) : parse_ply(bytes, path);
 }
 
 }  // namespace nuno

@@ -160,6 +160,8 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
   if (problem.is_sheet()) {
     head["kind"] = "sheet";
     head["faces"] = problem.sheet().faces;
+    head["crossings"] =
+        crossings_head(flight_crossings(problem, rollout.frame_times, rollout.frame_positions));
   }
   head["launch_velocity"] = to_json(rollout.launch_velocity);
   head["target"] = to_json(problem.target);

@@ -13,21 +13,23 @@ std::string_view word_for(OptimizeStatus status) {
 Json result_head(const std::string& scene, const Backend& backend, const Rollout& rollout) {
   const Problem& problem = backend.problem();
   const double size = problem.cloth().size;
-  return {{"scene", scene},
-          {"backend", backend.name()},
-          {"status", "ok"},
-          {"alpha", rollout.gains.rest},
-          {"time_step", backend.time_step()},
-          {"steps", backend.steps()},
-          {problem.is_sheet() ? "size" : "cloth_length", size},
-          {"target_scale", problem.target_scale},
-          {"error",
-           {{"mean", rollout.error.mean},
-            {"max", rollout.error.max},
-            {"centroid", rollout.error.centroid},
-            {"relative", rollout.error.mean / size}}},
-          {"control_effort", rollout.control_effort},
-          {"max_strain", rollout.max_strain}};
+  Json head = {{"scene", scene},
+               {"backend", backend.name()},
+               {"status", "ok"},
+               {"alpha", rollout.gains.rest},
+               {"time_step", backend.time_step()},
+               {"steps", backend.steps()},
+               {problem.is_sheet() ? "size" : "cloth_length", size},
+               {"target_scale", problem.target_scale},
+               {"error",
+                {{"mean", rollout.error.mean},
+                 {"max", rollout.error.max},
+                 {"centroid", rollout.error.centroid},
+                 {"relative", rollout.error.mean / size}}},
+               {"control_effort", rollout.control_effort},
+               {"max_strain", rollout.max_strain}};
+  if (rollout.step_error) head["step_error"] = *rollout.step_error;  // infinity becomes null
+  return head;
 }
 
 Json search_head(const std::string& optimizer, const OptimizeSummary& summary) {
@@ -44,6 +46,23 @@ Json history_of(const OptimizeSummary& summary) {
     history.push_back({{"alpha", evaluation.gain}, {"error", evaluation.error}});
   }
   return history;
+}
+
+Json crossings_head(const FlightCrossings& crossings) {
+  Json result = {{"frames", crossings.frames},
+                 {"crossed_frames", crossings.crossed_frames},
+                 {"grounded_frames", crossings.grounded_frames}};
+  if (crossings.crossed_frames > 0) {
+    result["most_pairs"] = crossings.most_pairs;
+    result["first_time"] = crossings.first_time;
+    result["depth"] = crossings.depth;
+    result["deepest_time"] = crossings.deepest_time;
+  }
+  if (crossings.grounded_frames > 0) {
+    result["ground_time"] = crossings.ground_time;
+    result["ground_depth"] = crossings.ground_depth;
+  }
+  return result;
 }
 
 Json refinement_head(const RefineSummary& refinement) {

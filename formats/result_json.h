@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nuno/crossings.h>
 #include <nuno/optimize.h>
 #include <nuno/refine.h>
 #include <nuno/rollout.h>
@@ -22,6 +23,9 @@ nlohmann::ordered_json search_head(const std::string& optimizer, const OptimizeS
 
 /// The gains tried and their errors; without those that diverged, which have no error to note.
 nlohmann::ordered_json history_of(const OptimizeSummary& summary);
+
+/// Where a sheet passes through itself or the ground, of a rollout that kept frames.
+nlohmann::ordered_json crossings_head(const FlightCrossings& crossings);
 
 /// How refinement ended, and what it took.
 nlohmann::ordered_json refinement_head(const RefineSummary& refinement);

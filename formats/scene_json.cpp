@@ -17,6 +17,7 @@
 
 #include "compact_json.h"
 #include "json_field.h"
+#include "scene_mesh.h"
 
 namespace nuno {
 namespace {
@@ -138,13 +139,14 @@ std::string_view word_for(const Words& words, Enum value) {
 constexpr std::array<std::string_view, 2> shape_fields = {"initial", "target"};
 
 /// A scene's fields take numbers and words, but for its shapes.
-const JsonForm scene_form = {.points = {{"/initial", 0}, {"/target", 0}}, .longest_list = 64};
-
-Json to_json(const Points& points) {
-  Json array = Json::array();
-  for (Index i = 0; i < points.cols(); ++i) array.push_back({points(0, i), points(1, i)});
-  return array;
-}
+const JsonForm scene_form = {
+    .points = {{"/initial", 0},
+               {"/target", 0},
+               {"/initial/vertices", 0},
+               {"/initial/texture_coordinates", 0},
+               {"/target/vertices", 0}},
+    .longest_list = 64,
+    .long_lists = {"/initial/faces", "/initial/texture_corners", "/initial/file_vertices"}};
 
 // Every field of a scene file stands here once, with the words that it may have; what lists, reads
 // and writes scenes visits them.
@@ -250,8 +252,12 @@ void read_material(const Json& json, const Field& root, auto& cloth) {
   visit_material(cloth, FieldReader{json["cloth"], at});
 }
 
-bool is_sheet(const Json& json) {
+bool names_meshes(const Json& json) {
   return json.is_object() && json.contains("initial") && json["initial"].is_string();
+}
+
+bool has_meshes(const Json& json) {
+  return json.is_object() && json.contains("initial") && json["initial"].is_object();
 }
 
 /// Every field but for the shapes.
@@ -294,17 +300,30 @@ void read_fields(const Json& json, const Field& root, SheetScene& scene) {
   visit_last(scene, FieldReader{json, root});
 }
 
-SheetInput read_sheet(const Json& json, const std::string& source,
-                      const std::filesystem::path& folder) {
+SheetInput read_sheet_of_files(const Json& json, const std::string& source,
+                               const std::filesystem::path& folder) {
   const Field root{source, ""};
   require_fields<SheetScene>(json, root);
+  SheetScene scene;
   std::string initial, target;
   read(json, root, "initial", initial);
   read(json, root, "target", target);
-  SheetScene scene;
   read_fields(json, root, scene);
   return with_meshes(std::move(scene), (folder / initial).string(), (folder / target).string(),
                      source);
+}
+
+SheetInput read_whole_sheet(const Json& json, const std::string& source) {
+  const Field root{source, ""};
+  require_fields<SheetScene>(json, root);
+  SheetScene scene;
+  read_fields(json, root, scene);
+  Mesh mesh = mesh_in_scene(json["initial"], root.child("initial"), false);
+  scene.initial = mesh.vertices;
+  scene.faces = mesh.faces;
+  scene.target = mesh_in_scene(json["target"], root.child("target"), true).vertices;
+  validate(scene, source);
+  return {std::move(scene), std::move(mesh)};
 }
 
 }  // namespace
@@ -314,13 +333,26 @@ AnyScene read_scene(const std::string& path) { return parse_any_scene(read_input
 AnyScene parse_any_scene(const std::string& text, const std::string& path) {
   const std::string source = name_of_input(path);
   const Json json = parse_compact(text, source, scene_form);
-  if (is_sheet(json)) return read_sheet(json, source, std::filesystem::path(path).parent_path());
+  if (names_meshes(json)) {
+    return read_sheet_of_files(json, source, std::filesystem::path(path).parent_path());
+  }
+  if (has_meshes(json)) return read_whole_sheet(json, source);
+  return read_chain(json, source);
+}
+
+AnyScene parse_whole_scene(const std::string& text, const std::string& source) {
+  const Json json = parse_compact(text, source, scene_form);
+  if (names_meshes(json)) {
+    const Field at = Field{source, ""}.child("initial");
+    at.refuse("a mesh file is not read here; give the points of a chain, or vertices and faces");
+  }
+  if (has_meshes(json)) return read_whole_sheet(json, source);
   return read_chain(json, source);
 }
 
 ChainScene parse_scene(const std::string& text, const std::string& source) {
   const Json json = parse_compact(text, source, scene_form);
-  if (is_sheet(json)) {
+  if (names_meshes(json) || has_meshes(json)) {
     const Field at = Field{source, ""}.child("initial");
     at.refuse("a mesh file is not read here; give the points of a chain");
   }
@@ -383,10 +415,25 @@ std::string to_json(const ChainScene& scene) {
   return json.dump(1);
 }
 
+std::string to_json(const SheetInput& sheet) {
+  Json json = {{"nuno_scene", 1}};
+  const FieldWriter write{json};
+  visit_first(sheet.scene, write);
+  json["initial"] = to_json(sheet.mesh);
+  json["target"] = {{"vertices", to_json(sheet.scene.target)}};
+  visit_material(sheet.scene.cloth, FieldWriter{json["cloth"]});
+  visit_last(sheet.scene, write);
+  return json.dump();
+}
+
 SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
                        const std::string& source) {
-  Mesh start = read_mesh(initial);
-  Mesh end = read_mesh(target);
+  return with_meshes(std::move(scene), initial, read_mesh(initial), target, read_mesh(target),
+                     source);
+}
+
+SheetInput with_meshes(SheetScene scene, const std::string& initial, Mesh start,
+                       const std::string& target, Mesh end, const std::string& source) {
   weld_seams(start, end);
   require_same_faces(start, initial, end, target);
   cut_polygons(start);

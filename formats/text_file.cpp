@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 namespace nuno {
@@ -15,10 +16,36 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";  // of UTF-8
 
+int digit_of_base64(char c) {
+  if (c >= 'A' && c <= 'Z') return c - 'A';
+  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
+  if (c >= '0' && c <= '9') return c - '0' + 52;
+  return c == '+' ? 62 : c == '/' ? 63 : -1;
+}
+
 }  // namespace
 
 std::string shown_text(std::string_view value) {
   return printable(std::string(value.substr(0, 60)));
+}
+
+std::size_t from_base64(std::string_view text, std::string& bytes) {
+  const std::size_t padded = text.size();
+  while (text.ends_with('=')) text.remove_suffix(1);
+  bytes.reserve(bytes.size() + text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const int digit = digit_of_base64(text[i]);
+    if (digit < 0) return i;
+    bits = bits << 6 | static_cast<std::uint32_t>(digit);
+    count += 6;
+    if (count >= 8) {
+      count -= 8;
+      bytes.push_back(static_cast<char>(bits >> count & 0xff));
+    }
+  }
+  return padded;
 }
 
 void Line::refuse(std::string_view value, const std::string& rule) const {

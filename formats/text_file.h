@@ -26,6 +26,10 @@ struct Line {
 /// A value as a message shows it: on one line, cut where it is long.
 std::string shown_text(std::string_view value);
 
+/// Appends the bytes of a text in base64, and returns where it is none any more: its size if all
+/// is.
+std::size_t from_base64(std::string_view text, std::string& bytes);
+
 inline constexpr std::string_view line_blanks = " \t\r\v\f";
 
 /// Cuts the next word off `rest`; empty at its end.

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <nuno/gains.h>
 #include <nuno/reference_motion.h>
+
+#include "rollout_gains.h"
 
 #include <span>
 #include <string>
@@ -49,25 +50,6 @@ struct ScalarScratch {
 /// Advances one chain by one step under the forces [2N].
 void step(const ChainPlan& plan, bool first, const double* forces, double* positions,
           double* velocities, ScalarScratch& scratch);
-
-/// The gains of several flights.
-struct RolloutGains {
-  std::span<const double> values;  ///< of every group [groups × flights], a flight after another
-  const LowModes* low_modes = nullptr;  ///< of all groups but the last; null: there is but one
-  /// The group with respect to whose gain a flight's derivatives are taken; empty: the first for
-  /// all.
-  std::span<const Index> seeds = {};
-
-  Index groups() const { return low_modes == nullptr ? 1 : low_modes->group.back() + 2; }
-  Index flights() const { return static_cast<Index>(values.size()) / groups(); }
-  double value(Index flight, Index group) const {
-    return values[static_cast<std::size_t>(flight * groups() + group)];
-  }
-  Index seed(Index flight) const {
-    return seeds.empty() ? 0 : seeds[static_cast<std::size_t>(flight)];
-  }
-  RolloutGains part(Index first, Index count) const;
-};
 
 /// One whole flight under shape control towards `reference` for each of `gains`: final positions
 /// [2N] after another in `finals`, and their derivatives with respect to a gain in `derivatives`

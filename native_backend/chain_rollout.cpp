@@ -12,6 +12,7 @@
 #include <hwy/foreach_target.h>  // compiles the rest of this file once for every target
 // clang-format off: it needs the target to be chosen
 #include "chain_step-inl.h"
+#include "grouped_control-inl.h"
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
@@ -32,17 +33,6 @@ void step_scalar(const ChainPlan& plan, bool first, const double* forces, double
                  });
 }
 
-// Numbers of a gain in every lane; `seeds` is 1 where the derivative is with respect to it, 0
-// elsewhere.
-HWY_INLINE Real gain_number(const double* gains, const double*, Real) { return *gains; }
-HWY_INLINE Pack gain_number(const double* gains, const double*, Pack) {
-  return load_lanes(gains, Pack());
-}
-template <typename T>
-HWY_INLINE Dual<T> gain_number(const double* gains, const double* seeds, Dual<T>) {
-  return {load_lanes(gains, T()), load_lanes(seeds, T())};
-}
-
 /// Lanes of coordinate `at`: value to `finals`, derivative to `derivatives`, `stride` apart.
 template <typename T>
 HWY_INLINE void write_lanes(T number, double* finals, double*, Index at, Index stride,
@@ -57,96 +47,6 @@ HWY_INLINE void write_lanes(Dual<T> number, double* finals, double* derivatives,
   write_lanes(number.value, finals, nullptr, at, stride, count);
   write_lanes(number.derivative, derivatives, nullptr, at, stride, count);
 }
-
-/// β = 2ζ·√(α·m), shape_damping of the core; its derivative is β/2α.
-HWY_INLINE Real damping_number(const double* gains, const double*, double ratio, double mass,
-                               Real) {
-  return shape_damping(ratio, *gains, mass);
-}
-HWY_INLINE Pack damping_number(const double* gains, const double*, double ratio, double mass,
-                               Pack) {
-  double damping[HWY_MAX_BYTES / sizeof(double)] = {};
-  for (Index lane = 0; lane < lanes_of(Pack()); ++lane) {
-    damping[lane] = shape_damping(ratio, gains[lane], mass);
-  }
-  return load_lanes(damping, Pack());
-}
-template <typename T>
-HWY_INLINE Dual<T> damping_number(const double* gains, const double* seeds, double ratio,
-                                  double mass, Dual<T>) {
-  const T damping = damping_number(gains, seeds, ratio, mass, T());
-  const T gain = load_lanes(gains, T());
-  // At α = 0 the derivative is infinite; there it is given as none.
-  const T derivative = where_greater(gain, T(0.0), T(0.5) * damping / gain, T(0.0));
-  return {damping, load_lanes(seeds, T()) * derivative};
-}
-
-/// What one group of modes is pulled with.
-template <typename T>
-struct GroupNumbers {
-  T gain, damping;
-};
-template <typename T>
-HWY_INLINE GroupNumbers<T> group_numbers(const ChainPlan& plan, const RolloutGains& gains,
-                                         Index group) {
-  double values[HWY_MAX_BYTES / sizeof(double)] = {};
-  double seeds[HWY_MAX_BYTES / sizeof(double)] = {};
-  for (Index lane = 0; lane < lanes_of(T()); ++lane) {
-    const Index flight = std::min(lane, gains.flights() - 1);
-    values[lane] = gains.value(flight, group);
-    seeds[lane] = gains.seed(flight) == group ? 1 : 0;
-  }
-  return {gain_number(values, seeds, T()),
-          damping_number(values, seeds, plan.damping_ratio, plan.particle_mass, T())};
-}
-
-/// The part of shape control by which the low modes' gains differ from the last group's.
-template <typename T>
-struct LowModePull {
-  Index count = 0;
-  const double* shapes = nullptr;  ///< [modes × N]
-  GroupNumbers<T> excess[most_low_modes];
-  Vec2<T> amplitude[most_low_modes];  ///< of the force on each mode
-
-  HWY_INLINE void prepare(const ChainPlan& plan, const RolloutGains& gains) {
-    const GroupNumbers<T> rest = group_numbers<T>(plan, gains, gains.groups() - 1);
-    count = gains.low_modes->count();
-    shapes = gains.low_modes->shapes.data();
-    for (Index j = 0; j < count; ++j) {
-      const Index group = gains.low_modes->group[static_cast<std::size_t>(j)];
-      const GroupNumbers<T> own = group_numbers<T>(plan, gains, group);
-      excess[j] = {own.gain - rest.gain, own.damping - rest.damping};
-    }
-  }
-
-  /// Projects what is missing of shape and velocity, `offset(i)` and `lag(i)` at particle i.
-  template <typename Offset, typename Lag>
-  HWY_INLINE void project(Index particles, Offset&& offset, Lag&& lag) {
-    const T zero = Constant<T>::of(0);
-    Vec2<T> spring[most_low_modes], dashpot[most_low_modes];
-    for (Index j = 0; j < count; ++j) spring[j] = dashpot[j] = {zero, zero};
-    for (Index i = 0; i < particles; ++i) {
-      const Vec2<T> o = offset(i);
-      const Vec2<T> u = lag(i);
-      for (Index j = 0; j < count; ++j) {
-        const double weight = shapes[i * count + j];
-        spring[j] = spring[j] + Vec2<T>{scale(weight, o.x), scale(weight, o.y)};
-        dashpot[j] = dashpot[j] + Vec2<T>{scale(weight, u.x), scale(weight, u.y)};
-      }
-    }
-    for (Index j = 0; j < count; ++j) {
-      amplitude[j] = excess[j].gain * spring[j] + excess[j].damping * dashpot[j];
-    }
-  }
-
-  HWY_INLINE Vec2<T> add_to(Vec2<T> force, Index i) const {
-    for (Index j = 0; j < count; ++j) {
-      const double weight = shapes[i * count + j];
-      force = force + Vec2<T>{scale(weight, amplitude[j].x), scale(weight, amplitude[j].y)};
-    }
-    return force;
-  }
-};
 
 /// What shape control is made of: springs, dashpots too, and both with gains by group.
 enum class Control { springs, damped, grouped };
@@ -172,7 +72,7 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
 
   const GroupNumbers<T> rest = group_numbers<T>(plan, gains, gains.groups() - 1);
   const T gain = rest.gain, damping = rest.damping;
-  LowModePull<T> low_modes;
+  LowModePull<T, Vec2<T>> low_modes;
   if constexpr (control == Control::grouped) low_modes.prepare(plan, gains);
   const T particles = Constant<T>::of(static_cast<double>(n));
   for (Index step = 0; step < plan.steps; ++step) {
@@ -190,7 +90,7 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
     };
     if constexpr (control == Control::grouped) {
       low_modes.project(
-          n, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
+          n, {zero, zero}, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
           [&](Index j) NUNO_INLINE_LAMBDA { return lag(j, v[j]); });
     }
     sums = advance<damped_control>(
@@ -248,14 +148,6 @@ HWY_EXPORT(step_scalar);
 HWY_EXPORT(fly_all);
 HWY_EXPORT(lanes);
 HWY_EXPORT(instruction_set);
-
-RolloutGains RolloutGains::part(Index first, Index count) const {
-  const auto at = [](Index index) { return static_cast<std::size_t>(index); };
-  RolloutGains result = *this;
-  result.values = values.subspan(at(first * groups()), at(count * groups()));
-  if (!seeds.empty()) result.seeds = seeds.subspan(at(first), at(count));
-  return result;
-}
 
 void step(const ChainPlan& plan, bool first, const double* forces, double* positions,
           double* velocities, ScalarScratch& scratch) {

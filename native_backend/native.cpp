@@ -121,7 +121,7 @@ class NativeBackend final : public Backend {
 
   std::vector<double> do_errors(std::span<const Gains> gains,
                                 const Points& initial) const override {
-    const GroupedRollouts flights(problem(), gains, 1);
+    const GroupedRollouts flights(*this, gains, 1);
     std::vector<double> result;
     for (const Arrival& arrival : fly_over(flights.gains(), initial, false)) {
       result.push_back(arrival.error);
@@ -134,7 +134,7 @@ class NativeBackend final : public Backend {
   std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const override {
     if (gains.empty()) return {};
     const auto groups = static_cast<std::size_t>(gains.front().count());
-    const GroupedRollouts flights(problem(), gains, gains.front().count());
+    const GroupedRollouts flights(*this, gains, gains.front().count());
     std::vector<Arrival> arrivals = fly_over(flights.gains(), cloth().initial, true);
     std::vector<ErrorSample> result(gains.size());
     for (std::size_t i = 0; i < arrivals.size(); ++i) {
@@ -201,29 +201,6 @@ class NativeBackend final : public Backend {
     jacobian.forces_jacobian.array().colwise() *= each.array();
     return jacobian;
   }
-
-  /// Gains by group in the kernel's layout: each of them `copies` times, with the derivative by
-  /// another group each time.
-  class GroupedRollouts {
-   public:
-    GroupedRollouts(const Problem& problem, std::span<const Gains> gains, Index copies)
-        : modes_(problem.chain().particles(), gains.empty() ? 1 : gains.front().count()) {
-      for (const Gains& each : gains) {
-        assert(each.count() == gains.front().count());
-        for (Index copy = 0; copy < copies; ++copy) {
-          values_.insert(values_.end(), each.low.begin(), each.low.end());
-          values_.push_back(each.rest);
-          seeds_.push_back(copy);
-        }
-      }
-    }
-    RolloutGains gains() const { return {values_, modes_.count() > 0 ? &modes_ : nullptr, seeds_}; }
-
-   private:
-    LowModes modes_;
-    std::vector<double> values_;
-    std::vector<Index> seeds_;
-  };
 
   /// The control forces at the samples, and the flight where each of correction_powers begins to be
   /// felt.

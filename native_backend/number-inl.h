@@ -330,6 +330,14 @@ template <typename T, typename S>
 HWY_INLINE Dual<T, S> scale(double a, Dual<T, S> b) {
   return {T(a) * b.value, T(a) * b.derivative};
 }
+// The same with constants that differ by lane.
+HWY_INLINE Pack operator-(Pack a) { return hn::Neg(a.lanes); }
+HWY_INLINE Pack scale_add(Pack a, Pack b, Pack c) { return mul_add(a, b, c); }
+HWY_INLINE Pack scale(Pack a, Pack b) { return a * b; }
+HWY_INLINE Dual<Pack> scale_add(Pack a, Dual<Pack> b, Dual<Pack> c) {
+  return {mul_add(a, b.value, c.value), mul_add(a, b.derivative, c.derivative)};
+}
+HWY_INLINE Dual<Pack> scale(Pack a, Dual<Pack> b) { return {a * b.value, a * b.derivative}; }
 /// a + b with a constant a.
 template <typename T>
 HWY_INLINE T shift(double a, T b) {

@@ -5,12 +5,14 @@
 #include <nuno/parallel.h>
 #include <nuno/rollout.h>
 
+#include "sheet_adjoint.h"
 #include "sheet_kernel.h"
 #include "sheet_plan.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace nuno::native {
 namespace {
@@ -71,79 +73,94 @@ class SheetBackend final : public Backend {
 
   std::vector<double> do_errors(std::span<const Gains> gains,
                                 const Points& initial) const override {
-    if (has_groups(gains)) {
-      std::vector<double> errors(gains.size());
-      parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
-        const auto at = static_cast<std::size_t>(i);
-        errors[at] = rollout(*this, gains[at], {}, initial).error.mean;
-      });
-      return errors;
-    }
     std::vector<double> result;
-    for (const ErrorSample& sample : fly_all(gains, initial, false)) {
-      result.push_back(sample.error);
-    }
+    for (const Arrival& arrival : fly_over(gains, initial, false)) result.push_back(arrival.error);
     return result;
-  }
-
-  static bool has_groups(std::span<const Gains> gains) {
-    return std::ranges::any_of(gains, [](const Gains& each) { return each.count() > 1; });
   }
 
   bool do_has_derivatives() const override { return true; }
 
   std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const override {
-    return fly_all(gains, cloth().initial, true);
+    if (gains.empty()) return {};
+    const auto groups = static_cast<std::size_t>(gains.front().count());
+    std::vector<Arrival> arrivals = fly_over(gains, cloth().initial, true);
+    std::vector<ErrorSample> result(gains.size());
+    for (std::size_t i = 0; i < arrivals.size(); ++i) {
+      ErrorSample& sample = result[i / groups];
+      sample.error = arrivals[i].error;
+      sample.residual = std::move(arrivals[i].residual);
+      sample.derivatives.push_back(std::move(arrivals[i].derivative));
+    }
+    return result;
   }
 
-  std::vector<ErrorSample> fly_all(std::span<const Gains> gains, const Points& initial,
-                                   bool with_derivatives) const {
-    std::vector<double> values;
-    for (const Gains& each : gains) values.push_back(each.rest);
-    std::vector<ErrorSample> samples(gains.size());
+  bool do_has_gradient() const override { return true; }
+
+  RolloutGradient do_gradient(double gain, const CotangentAt& cotangent_at) const override {
+    const SheetState start = begin(plan_, cloth().initial, launch(*this));
+    RolloutGradient gradient = fly_back(plan_, problem(), start, gain, cotangent_at);
+    if (gradient.launch.size() > 0) {
+      gradient.reference_correction = correction_cotangents(
+          problem(), std::move(gradient.reference_correction), gradient.launch);
+    }
+    return gradient;
+  }
+
+  /// How a flight of the kernel arrives, and the derivatives with respect to one of its gains.
+  struct Arrival {
+    double error = 0;
+    Points residual;
+    ErrorSample::Derivative derivative;
+  };
+
+  /// A flight for each of the gains; with derivatives, one for each of their groups.
+  std::vector<Arrival> fly_over(std::span<const Gains> gains, const Points& initial,
+                                bool with_derivatives) const {
+    if (gains.empty()) return {};
+    const GroupedRollouts flights(*this, gains, with_derivatives ? gains.front().count() : 1);
+    const RolloutGains all = flights.gains();
+    std::vector<Arrival> arrivals(static_cast<std::size_t>(all.flights()));
     const SheetState start = begin(plan_, initial, launch(*this));
     const ReferenceMotion reference(problem(), time_step());
-    const auto batch = static_cast<std::size_t>(sheet_lanes());
-    parallel_for(static_cast<Index>((values.size() + batch - 1) / batch), [&](Index b) {
-      const std::size_t first = static_cast<std::size_t>(b) * batch;
-      const std::size_t count = std::min(batch, values.size() - first);
-      const Points& target = problem().target;
-      std::vector<double> finals(static_cast<std::size_t>(target.size()) * count);
+    const Index batch = sheet_lanes();
+    parallel_for((all.flights() + batch - 1) / batch, [&](Index b) {
+      const Index first = b * batch;
+      const RolloutGains here = all.part(first, std::min(batch, all.flights() - first));
+      const Index size = problem().target.size();
+      std::vector<double> finals(static_cast<std::size_t>(size * here.flights()));
       std::vector<double> derivatives(with_derivatives ? finals.size() : 0);
-      fly(plan_, reference, start, std::span(values).subspan(first, count), finals.data(),
+      fly(plan_, reference, start, here, finals.data(),
           with_derivatives ? derivatives.data() : nullptr);
-      for (std::size_t lane = 0; lane < count; ++lane) {
-        const std::size_t at = lane * static_cast<std::size_t>(target.size());
-        samples[first + lane] =
-            sample_of(finals.data() + at, with_derivatives ? derivatives.data() + at : nullptr);
+      for (Index lane = 0; lane < here.flights(); ++lane) {
+        arrivals[static_cast<std::size_t>(first + lane)] =
+            arrival_of(finals.data() + lane * size,
+                       with_derivatives ? derivatives.data() + lane * size : nullptr);
       }
     });
-    return samples;
+    return arrivals;
   }
 
-  ErrorSample sample_of(const double* finals, const double* derivatives) const {
+  Arrival arrival_of(const double* finals, const double* derivatives) const {
     const Points& target = problem().target;
     const Eigen::Map<const Points> final(finals, 3, target.cols());
-    ErrorSample sample;
-    if (derivatives != nullptr) sample.derivatives.emplace_back();
+    Arrival arrival;
     if (is_torn(cloth(), final)) {
-      sample.error = std::numeric_limits<double>::infinity();
-      return sample;
+      arrival.error = std::numeric_limits<double>::infinity();
+      return arrival;
     }
-    sample.error = arrival_error(final, target).mean;
-    if (derivatives == nullptr) return sample;
-    sample.residual = final - target;
-    ErrorSample::Derivative& derivative = sample.derivatives.front();
-    derivative.residual = Eigen::Map<const Points>(derivatives, 3, target.cols());
+    arrival.error = arrival_error(final, target).mean;
+    if (derivatives == nullptr) return arrival;
+    arrival.residual = final - target;
+    arrival.derivative.residual = Eigen::Map<const Points>(derivatives, 3, target.cols());
     double sum = 0;
     for (Index i = 0; i < target.cols(); ++i) {
-      const double distance = sample.residual.col(i).norm();
+      const double distance = arrival.residual.col(i).norm();
       if (distance > 0) {
-        sum += sample.residual.col(i).dot(derivative.residual.col(i)) / distance;
+        sum += arrival.residual.col(i).dot(arrival.derivative.residual.col(i)) / distance;
       }
     }
-    derivative.error = sum / static_cast<double>(target.cols());
-    return sample;
+    arrival.derivative.error = sum / static_cast<double>(target.cols());
+    return arrival;
   }
 
   SheetPlan plan_;

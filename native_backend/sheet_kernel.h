@@ -3,7 +3,8 @@
 #include <nuno/problem.h>
 #include <nuno/reference_motion.h>
 
-#include <span>
+#include "rollout_gains.h"
+
 #include <vector>
 
 namespace nuno::native {
@@ -65,11 +66,11 @@ void step(const SheetPlan& plan, const Points& forces, SheetState& state);
 /// Values of the particles in the plan's order, as Points [3 × N] in the problem's.
 void in_user_order(const SheetPlan& plan, const std::vector<double>& values, Points& points);
 
-/// Whole flights of one sheet from `start`, one for each gain: final positions [3N] after another
-/// in `finals`, and their derivatives with respect to the gain in `derivatives` unless that is
-/// null. Equal, bit for bit, to rollouts of the core by `step`.
+/// Whole flights of one sheet from `start`, one for each of `gains`: final positions [3N] after
+/// another in `finals`, and their derivatives with respect to a gain in `derivatives` unless that
+/// is null. Equal, bit for bit, to rollouts of the core by `step`.
 void fly(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
-         std::span<const double> gains, double* finals, double* derivatives);
+         const RolloutGains& gains, double* finals, double* derivatives);
 
 /// Gains that `fly` takes side by side, one a SIMD lane.
 Index sheet_lanes();

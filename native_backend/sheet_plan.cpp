@@ -1,9 +1,9 @@
 #include "sheet_plan.h"
 
 #include <nuno/backend.h>
+#include <nuno/sheet_stiffness.h>
 
 #include <fmt/format.h>
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -13,64 +13,15 @@
 namespace nuno::native {
 namespace {
 
-using Eigen::Vector3d;
-
 double kick_time(double drag_rate, double h) {
   return drag_rate * h > 0 ? -std::expm1(-drag_rate * h) / drag_rate : h;
 }
 
 // ---- steps that are stable ------------------------------------------------------------------
 
-/// Forces that a small displacement calls forth are −K·displacement, K = Σ k·g·gᵀ over springs and
-/// hinges, g the gradient of the length or the angle. Two such sums, of the stiffness and of the
-/// damping.
-struct Linear {
-  Index nodes = 0;                 ///< particles that each g touches
-  std::vector<Index> at;           ///< them [nodes × count]
-  std::vector<Vector3d> gradient;  ///< [nodes × count]
-  std::vector<double> stiffness, damping;
-
-  std::size_t count() const { return stiffness.size(); }
-};
-
-Linear linear_springs(const Sheet& sheet) {
-  Linear linear{2, {}, {}, {}, {}};
-  for (const Springs* springs : {&sheet.stretch, &sheet.shear}) {
-    for (Index e = 0; e < springs->count(); ++e) {
-      const Index a = springs->ends(0, e), b = springs->ends(1, e);
-      const Vector3d t = (sheet.initial.col(b) - sheet.initial.col(a)).normalized();
-      linear.at.insert(linear.at.end(), {a, b});
-      linear.gradient.insert(linear.gradient.end(), {-t, t});
-      linear.stiffness.push_back(springs->stiffness[e]);
-      linear.damping.push_back(springs->damping[e]);
-    }
-  }
-  return linear;
-}
-
-Linear linear_hinges(const Sheet& sheet) {
-  Linear linear{4, {}, {}, {}, {}};
-  for (Index h = 0; h < sheet.hinges.count(); ++h) {
-    const auto corners = sheet.hinges.corners.col(h);
-    const Vector3d a = sheet.initial.col(corners[0]), b = sheet.initial.col(corners[1]);
-    const Vector3d c = sheet.initial.col(corners[2]), d = sheet.initial.col(corners[3]);
-    const Vector3d e = b - a;
-    const Vector3d n1 = e.cross(c - a), n2 = (d - a).cross(e);
-    const Vector3d at_c = -e.norm() / n1.squaredNorm() * n1;
-    const Vector3d at_d = -e.norm() / n2.squaredNorm() * n2;
-    const double t1 = (c - a).dot(e) / e.squaredNorm(), t2 = (d - a).dot(e) / e.squaredNorm();
-    const Vector3d at_b = -(t1 * at_c + t2 * at_d);
-    linear.at.insert(linear.at.end(), corners.begin(), corners.end());
-    linear.gradient.insert(linear.gradient.end(), {-(at_b + at_c + at_d), at_b, at_c, at_d});
-    linear.stiffness.push_back(sheet.hinges.stiffness[h]);
-    linear.damping.push_back(sheet.hinges.damping[h]);
-  }
-  return linear;
-}
-
 /// The largest eigenvalue of M⁻¹·Σ k·g·gᵀ [1/s² of stiffnesses, 1/s of dampings], by power
 /// iteration from a rough pattern: within some per cent, from below.
-double largest_eigenvalue(const Sheet& sheet, const Linear& linear,
+double largest_eigenvalue(const Sheet& sheet, const LinearElements& linear,
                           const std::vector<double>& weights) {
   constexpr int iterations = 60;
   const Index n = sheet.particles();
@@ -108,8 +59,8 @@ struct StableStep {
   const char* field = "";
 };
 
-StableStep stable_step(const Sheet& sheet, const Linear& linear, const char* stiffness_field,
-                       const char* damping_field) {
+StableStep stable_step(const Sheet& sheet, const LinearElements& linear,
+                       const char* stiffness_field, const char* damping_field) {
   const double squared = largest_eigenvalue(sheet, linear, linear.stiffness);
   const double rate = largest_eigenvalue(sheet, linear, linear.damping);
   // h = 4/(c + √(c² + 4ω²)), the root of h²ω² + 2hc = 4.
@@ -213,10 +164,10 @@ SheetSteps choose_steps(const Problem& problem) {
   constexpr double default_steps = 800;
 
   const Sheet& sheet = problem.sheet();
-  const StableStep springs = stable_step(sheet, linear_springs(sheet), "/cloth/stretch_stiffness",
-                                         "/cloth/stretch_damping");
-  const StableStep hinges = stable_step(sheet, linear_hinges(sheet), "/cloth/bending_stiffness",
-                                        "/cloth/bending_damping");
+  const StableStep springs = stable_step(sheet, linear_springs(sheet, sheet.initial),
+                                         "/cloth/stretch_stiffness", "/cloth/stretch_damping");
+  const StableStep hinges = stable_step(sheet, linear_hinges(sheet, sheet.initial),
+                                        "/cloth/bending_stiffness", "/cloth/bending_damping");
   const double usual = std::min(problem.arrival_time / default_steps, hinge_safety * hinges.h);
   double h = problem.time_step.value_or(problem.arrival_time / default_steps);
   const char* field = problem.time_step ? "/time_step" : "/arrival_time";

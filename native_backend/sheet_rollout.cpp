@@ -11,6 +11,7 @@
 #define HWY_TARGET_INCLUDE "sheet_rollout.cpp"
 #include <hwy/foreach_target.h>  // compiles the rest of this file once for every target
 // clang-format off: it needs the target to be chosen
+#include "grouped_control-inl.h"
 #include "sheet_step-inl.h"
 // clang-format on
 
@@ -50,16 +51,7 @@ void begin_turns(const SheetPlan& plan, const double* rates, SheetState& state) 
   }
 }
 
-// ---- numbers of a gain in every lane --------------------------------------------------------
-
-template <typename T>
-HWY_INLINE T lanes_with_derivative(const double* values, const double*, T) {
-  return load_lanes(values, T());
-}
-template <typename T>
-HWY_INLINE Dual<T> lanes_with_derivative(const double* values, const double* derivatives, Dual<T>) {
-  return {load_lanes(values, T()), load_lanes(derivatives, T())};
-}
+// ---- flights at a gain in every lane --------------------------------------------------------
 
 template <typename T>
 HWY_INLINE void write_sheet_lanes(T number, double* values, double*, Index stride, Index count) {
@@ -74,27 +66,6 @@ HWY_INLINE void write_sheet_lanes(Dual<T> number, double* values, double* deriva
   write_sheet_lanes(number.derivative, derivatives, nullptr, stride, count);
 }
 
-/// The control law of ShapeControl with one gain, a lane each.
-template <typename T>
-struct SheetControl {
-  T gain, damping;
-
-  SheetControl(const SheetPlan& plan, std::span<const double> gains) {
-    constexpr std::size_t most = HWY_MAX_BYTES / sizeof(double);
-    double gain_values[most] = {}, ones[most] = {}, damping_values[most] = {}, rates[most] = {};
-    for (std::size_t lane = 0; lane < static_cast<std::size_t>(lanes_of(T())); ++lane) {
-      const double value = gains[std::min(lane, gains.size() - 1)];
-      gain_values[lane] = value;
-      ones[lane] = 1;
-      damping_values[lane] = shape_damping(plan.damping_ratio, value, plan.particle_mass);
-      // β = 2ζ·√(α·m); at α = 0, where its derivative is infinite, it is given as none.
-      rates[lane] = value > 0 ? 0.5 * damping_values[lane] / value : 0;
-    }
-    gain = lanes_with_derivative(gain_values, ones, T());
-    damping = lanes_with_derivative(damping_values, rates, T());
-  }
-};
-
 /// Σ mᵢ·xᵢ/Σ mᵢ, summed as mass_center of the core does.
 template <typename T>
 HWY_INLINE Vec3<T> sheet_center(const SheetPlan& plan, const Vec3<T>* x) {
@@ -108,7 +79,7 @@ HWY_INLINE Vec3<T> sheet_center(const SheetPlan& plan, const Vec3<T>* x) {
 
 template <bool damped_control, typename T>
 void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const SheetState& start,
-                     std::span<const double> gains, double* finals, double* derivatives) {
+                     const RolloutGains& gains, double* finals, double* derivatives) {
   const Index n = plan.particles;
   const auto broadcast = [](const std::vector<double>& from) NUNO_INLINE_LAMBDA {
     std::unique_ptr<T[]> to(new T[from.size()]);
@@ -125,13 +96,17 @@ void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const She
   const SheetArrays<T> sheet{reinterpret_cast<Vec3<T>*>(positions.get()),
                              reinterpret_cast<Vec3<T>*>(impulse.get()), length.get(), turn.get(),
                              velocity};
-  const SheetControl<T> control(plan, gains);
+  const GroupNumbers<T> control = group_numbers<T>(plan, gains, gains.groups() - 1);
+  LowModePull<T, Vec3<T>> low_modes;
+  low_modes.prepare(plan, gains);
   // As the core's rollout does, velocities are taken on by half a step, with the reference's.
   const std::unique_ptr<T[]> told = broadcast(start.velocities);
   const std::unique_ptr<T[]> before = broadcast(start.velocities);
   auto* told_velocity = damped_control ? reinterpret_cast<Vec3<T>*>(told.get()) : nullptr;
   auto* velocity_before = damped_control ? reinterpret_cast<Vec3<T>*>(before.get()) : nullptr;
   Points motion_before = reference.velocity();
+  const T zero = Constant<T>::of(0);
+  const Vec3<T> none{zero, zero, zero};
   for (Index step = 0; step < plan.steps; ++step) {
     const double* shape = reference.shape().data();
     const double* motion = reference.velocity().data();
@@ -151,23 +126,37 @@ void fly_sheet_lanes(const SheetPlan& plan, ReferenceMotion reference, const She
       motion_before = reference.velocity();
       drift = sheet_center(plan, told_velocity);
     }
+    // Of a particle by its index in the problem.
+    const auto missing = [&](const double* of, const Vec3<T>& mean, const Vec3<T>* here,
+                             Index user) NUNO_INLINE_LAMBDA {
+      const double* at = of + 3 * user;
+      const Vec3<T>& own = here[plan.plan_index[static_cast<std::size_t>(user)]];
+      return Vec3<T>{shift(at[0], mean.x - own.x), shift(at[1], mean.y - own.y),
+                     shift(at[2], mean.z - own.z)};
+    };
+    const auto offset = [&](Index user)
+                            NUNO_INLINE_LAMBDA { return missing(shape, center, sheet.x, user); };
+    const auto lag = [&](Index user) NUNO_INLINE_LAMBDA {
+      if constexpr (damped_control) return missing(motion, drift, told_velocity, user);
+      return none;
+    };
+    const auto mass = [&](Index user) NUNO_INLINE_LAMBDA {
+      return plan.relative_mass[static_cast<std::size_t>(user)];
+    };
+    if (low_modes.count > 0) {
+      low_modes.project(
+          n, none, [&](Index user) NUNO_INLINE_LAMBDA { return scale(mass(user), offset(user)); },
+          [&](Index user) NUNO_INLINE_LAMBDA { return scale(mass(user), lag(user)); });
+    }
     advance_sheet(plan, step == 0, sheet, [&](Index i) NUNO_INLINE_LAMBDA {
       const Index user = plan.user_index[static_cast<std::size_t>(i)];
-      const auto missing = [&](const double* of, const Vec3<T>& mean,
-                               const Vec3<T>& here) NUNO_INLINE_LAMBDA {
-        const double* at = of + 3 * user;
-        return Vec3<T>{shift(at[0], mean.x - here.x), shift(at[1], mean.y - here.y),
-                       shift(at[2], mean.z - here.z)};
-      };
-      Vec3<T> pull = control.gain * missing(shape, center, sheet.x[i]);
-      if constexpr (damped_control) {
-        pull = pull + control.damping * missing(motion, drift, told_velocity[i]);
-      }
-      return scale(plan.relative_mass[static_cast<std::size_t>(user)], pull);
+      Vec3<T> pull = control.gain * offset(user);
+      if constexpr (damped_control) pull = pull + control.damping * lag(user);
+      return scale(mass(user), low_modes.add_to(pull, user));
     });
     reference.advance();
   }
-  const auto count = static_cast<Index>(gains.size());
+  const Index count = gains.flights();
   for (Index i = 0; i < n; ++i) {
     const Index at = 3 * plan.user_index[static_cast<std::size_t>(i)];
     const T coordinates[3] = {sheet.x[i].x, sheet.x[i].y, sheet.x[i].z};
@@ -184,13 +173,12 @@ auto sheet_flight_of(const SheetPlan& plan) {
 }
 
 void fly_sheet_all(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
-                   std::span<const double> gains, double* finals, double* derivatives) {
-  const auto wide = static_cast<std::size_t>(lanes_of(Pack()));
-  const std::size_t stride = static_cast<std::size_t>(3 * plan.particles);
-  for (std::size_t first = 0; first < gains.size(); first += wide) {
-    const std::span<const double> here = gains.subspan(first, std::min(wide, gains.size() - first));
+                   const RolloutGains& gains, double* finals, double* derivatives) {
+  const Index wide = lanes_of(Pack()), stride = 3 * plan.particles;
+  for (Index first = 0; first < gains.flights(); first += wide) {
+    const RolloutGains here = gains.part(first, std::min(wide, gains.flights() - first));
     const auto flight = derivatives != nullptr ? sheet_flight_of<Dual<Pack>>(plan)
-                        : here.size() == 1     ? sheet_flight_of<Real>(plan)
+                        : here.flights() == 1  ? sheet_flight_of<Real>(plan)
                                                : sheet_flight_of<Pack>(plan);
     flight(plan, reference, start, here, finals + first * stride,
            derivatives == nullptr ? nullptr : derivatives + first * stride);
@@ -264,7 +252,7 @@ void in_user_order(const SheetPlan& plan, const std::vector<double>& values, Poi
 }
 
 void fly(const SheetPlan& plan, const ReferenceMotion& reference, const SheetState& start,
-         std::span<const double> gains, double* finals, double* derivatives) {
+         const RolloutGains& gains, double* finals, double* derivatives) {
   HWY_DYNAMIC_DISPATCH(fly_sheet_all)
   (plan, reference, start, gains, finals, derivatives);
 }

@@ -168,8 +168,10 @@ struct HingeShape {
   T t1, t2;
   T turn;  ///< θ − θ₀
 
+  /// A rest angle for all lanes (double) or of each its own (Pack).
+  template <typename C>
   HWY_INLINE HingeShape(const Vec3<T>& a, const Vec3<T>& b, const Vec3<T>& c, const Vec3<T>& d,
-                        double rest_cosine, double rest_sine) {
+                        C rest_cosine, C rest_sine) {
     const Vec3<T> e = b - a, to_c = c - a, to_d = d - a;
     n1 = cross(e, to_c);
     n2 = cross(to_d, e);
@@ -194,9 +196,21 @@ struct HingeShape {
   static HWY_INLINE T neg_add(T a, T b) { return (Constant<T>::of(0) - a) - b; }
 };
 
-/// The hinges kick for `kicks` of a full kick of a substep.
+/// The forces of a hinge on its corners.
+template <typename T>
+struct HingeForces {
+  Vec3<T> a, minus_b, c, d;
+
+  HWY_INLINE HingeForces(const HingeShape<T>& shape, const T& moment) {
+    c = (moment * shape.g1) * shape.n1;
+    d = (moment * shape.g2) * shape.n2;
+    minus_b = add_scaled(shape.t1, c, shape.t2 * d);
+    a = minus_b - (c + d);
+  }
+};
+
 template <bool damped, typename T>
-HWY_INLINE void hinge_kick(const SheetPlan& plan, double kicks, const SheetArrays<T>& sheet) {
+HWY_INLINE void hinge_kick_of(const SheetPlan& plan, double kicks, const SheetArrays<T>& sheet) {
   const Index* corners = plan.corners.data();
   for (Index h = 0; h < plan.hinges(); ++h, corners += 4) {
     const auto at = static_cast<std::size_t>(h);
@@ -209,13 +223,72 @@ HWY_INLINE void hinge_kick(const SheetPlan& plan, double kicks, const SheetArray
                          within_half_turn(shape.turn - sheet.turn[h]), moment);
       sheet.turn[h] = shape.turn;
     }
-    const Vec3<T> one = (moment * shape.g1) * shape.n1;
-    const Vec3<T> two = (moment * shape.g2) * shape.n2;
-    const Vec3<T> at_b = add_scaled(shape.t1, one, shape.t2 * two);
-    sheet.u[a] = sheet.u[a] + (at_b - (one + two));
-    sheet.u[b] = sheet.u[b] - at_b;
-    sheet.u[c] = sheet.u[c] + one;
-    sheet.u[d] = sheet.u[d] + two;
+    const HingeForces<T> on(shape, moment);
+    sheet.u[a] = sheet.u[a] + on.a;
+    sheet.u[b] = sheet.u[b] - on.minus_b;
+    sheet.u[c] = sheet.u[c] + on.c;
+    sheet.u[d] = sheet.u[d] + on.d;
+  }
+}
+
+/// The hinges kick for `kicks` of a full kick of a substep.
+template <typename T>
+HWY_INLINE void hinge_kick(const SheetPlan& plan, double kicks, const SheetArrays<T>& sheet) {
+  if (plan.hinge_dashpot.empty()) {
+    hinge_kick_of<false>(plan, kicks, sheet);
+  } else {
+    hinge_kick_of<true>(plan, kicks, sheet);
+  }
+}
+
+/// How much of the velocity that control is told is that of a step's last substep.
+HWY_INLINE double end_share(const SheetPlan& plan) {
+  return 0.5 + 0.5 / static_cast<double>(plan.substeps);
+}
+
+/// How much of a full kick of a substep the slow forces give in a step.
+HWY_INLINE double kicks_of_step(const SheetPlan& plan, bool first) {
+  return (first ? plan.first_share : 1) * static_cast<double>(plan.substeps);
+}
+
+/// The slow forces of a step: `external(i)`, that on particle i of the plan's order, and what
+/// `hinges` kick.
+template <typename T, typename External, typename Hinges>
+HWY_INLINE void slow_kick(const SheetPlan& plan, bool first, const SheetArrays<T>& sheet,
+                          External&& external, Hinges&& hinges) {
+  const double kicks = kicks_of_step(plan, first);
+  for (Index i = 0; i < plan.particles; ++i) {
+    sheet.u[i] = scale_add(kicks, external(i), sheet.u[i]);
+  }
+  hinges(plan, kicks, sheet);
+  if (sheet.velocity == nullptr) return;
+  for (Index i = 0; i < plan.particles; ++i) {
+    sheet.velocity[i] = scale(1 - end_share(plan), velocity_of(plan, i, sheet.u[i]));
+  }
+}
+
+/// The substeps of a step after its slow kick. `before(n)` is called before substep n.
+template <typename T, typename Before>
+HWY_INLINE void spring_substeps(const SheetPlan& plan, bool first, const SheetArrays<T>& sheet,
+                                Before&& before) {
+  for (Index n = 0; n < plan.substeps; ++n) {
+    before(n);
+    if (plan.dashpot.empty()) {
+      if (n == 0 && first) {
+        spring_substep<false, false>(plan, plan.first_share, sheet);
+      } else {
+        spring_substep<false, true>(plan, 1, sheet);
+      }
+    } else if (n == 0 && first) {
+      spring_substep<true, false>(plan, plan.first_share, sheet);
+    } else {
+      spring_substep<true, true>(plan, 1, sheet);
+    }
+  }
+  if (sheet.velocity == nullptr) return;
+  for (Index i = 0; i < plan.particles; ++i) {
+    sheet.velocity[i] =
+        scale_add(end_share(plan), velocity_of(plan, i, sheet.u[i]), sheet.velocity[i]);
   }
 }
 
@@ -223,40 +296,8 @@ HWY_INLINE void hinge_kick(const SheetPlan& plan, double kicks, const SheetArray
 template <typename T, typename External>
 HWY_INLINE void advance_sheet(const SheetPlan& plan, bool first, const SheetArrays<T>& sheet,
                               External&& external) {
-  const double share = first ? plan.first_share : 1;
-  const double kicks = share * static_cast<double>(plan.substeps);
-  for (Index i = 0; i < plan.particles; ++i) {
-    sheet.u[i] = scale_add(kicks, external(i), sheet.u[i]);
-  }
-  if (plan.hinge_dashpot.empty()) {
-    hinge_kick<false>(plan, kicks, sheet);
-  } else {
-    hinge_kick<true>(plan, kicks, sheet);
-  }
-  const double end_share = 0.5 + 0.5 / static_cast<double>(plan.substeps);
-  if (sheet.velocity != nullptr) {
-    for (Index i = 0; i < plan.particles; ++i) {
-      sheet.velocity[i] = scale(1 - end_share, velocity_of(plan, i, sheet.u[i]));
-    }
-  }
-  for (Index n = 0; n < plan.substeps; ++n) {
-    if (plan.dashpot.empty()) {
-      if (n == 0 && first) {
-        spring_substep<false, false>(plan, share, sheet);
-      } else {
-        spring_substep<false, true>(plan, 1, sheet);
-      }
-    } else if (n == 0 && first) {
-      spring_substep<true, false>(plan, share, sheet);
-    } else {
-      spring_substep<true, true>(plan, 1, sheet);
-    }
-  }
-  if (sheet.velocity != nullptr) {
-    for (Index i = 0; i < plan.particles; ++i) {
-      sheet.velocity[i] = scale_add(end_share, velocity_of(plan, i, sheet.u[i]), sheet.velocity[i]);
-    }
-  }
+  slow_kick(plan, first, sheet, external, hinge_kick<T>);
+  spring_substeps(plan, first, sheet, [](Index) {});
 }
 
 }  // namespace HWY_NAMESPACE

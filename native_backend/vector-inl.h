@@ -37,6 +37,10 @@ HWY_INLINE Vec2<T> operator*(T a, Vec2<T> b) {
   return {a * b.x, a * b.y};
 }
 template <typename T>
+HWY_INLINE Vec2<T> scale(double a, Vec2<T> b) {
+  return {scale(a, b.x), scale(a, b.y)};
+}
+template <typename T>
 HWY_INLINE T dot(Vec2<T> a, Vec2<T> b) {
   return mul_add(a.x, b.x, a.y * b.y);
 }

@@ -114,16 +114,26 @@ void require_extent(const std::string& path, const Points& target) {
   }
 }
 
-/// The edges around a sheet's faces, some of them twice; a chain's segments.
-Edges edges_of(const Field& root, bool is_sheet, Index particles) {
+Faces faces_of(const Field& root, Index particles) {
+  Faces result;
+  const Field faces = root.child("faces").list(1);
+  for (std::size_t f = 0; f < faces.value.size(); ++f) {
+    const Field face = faces.item(f).list(3);
+    std::vector<Index>& corners = result.emplace_back();
+    for (std::size_t k = 0; k < face.value.size(); ++k) {
+      corners.push_back(face.item(k).index(particles));
+    }
+  }
+  return result;
+}
+
+/// The edges around a sheet's faces, some of them twice; a chain's segments, where there are none.
+Edges edges_of(const Faces& faces, Index particles) {
   std::vector<std::pair<Index, Index>> ends;
-  if (is_sheet) {
-    const Field faces = root.child("faces").list(1);
-    for (std::size_t f = 0; f < faces.value.size(); ++f) {
-      const Field face = faces.item(f).list(3);
-      for (std::size_t k = 0, count = face.value.size(); k < count; ++k) {
-        const Index here = face.item(k).index(particles);
-        ends.push_back(std::minmax({here, face.item((k + 1) % count).index(particles)}));
+  if (!faces.empty()) {
+    for (const std::vector<Index>& face : faces) {
+      for (std::size_t k = 0; k < face.size(); ++k) {
+        ends.push_back(std::minmax({face[k], face[(k + 1) % face.size()]}));
       }
     }
     std::ranges::sort(ends);
@@ -172,7 +182,8 @@ figures::Flight parse_result(const std::string& text, const std::string& path) {
   flight.target = root.child("target").points(0, rows);
   require_extent(path, flight.target);
   const Index particles = flight.target.cols();
-  flight.stroke = figures::stroke_along(edges_of(root, is_sheet, particles));
+  if (is_sheet) flight.faces = faces_of(root, particles);
+  flight.stroke = figures::stroke_along(edges_of(flight.faces, particles));
   (void)root.child("final").points(particles, rows);
 
   const Field frames = root.child("frames");

@@ -27,6 +27,7 @@ Flight make_flight(const std::string& scene, const Backend& backend, const Rollo
           .error = rollout.error.mean,
           .max_error = rollout.error.max,
           .target = backend.problem().target,
+          .faces = backend.problem().is_sheet() ? backend.problem().sheet().faces : Faces(),
           .stroke = stroke_along(backend.cloth().edges),
           .times = rollout.frame_times,
           .positions = rollout.frame_positions};
@@ -57,6 +58,11 @@ std::vector<Index> stroke_along(const Edges& edges) {
     stroke.push_back(way.back());
   }
   return stroke;
+}
+
+Eigen::Vector3d to_the_eye() {
+  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+          std::cos(azimuth) * std::cos(elevation)};
 }
 
 Points seen(const Points& points) {

@@ -18,6 +18,7 @@ struct Flight {
   double error = 0;               ///< mean, at arrival [m]
   double max_error = 0;           ///< of the worst particle [m]
   Points target;                  ///< [d × N], m; d = 2 of a chain, 3 of a sheet
+  Faces faces;                    ///< of a sheet
   std::vector<Index> stroke;      ///< particles in the order in which a line draws the cloth
   std::vector<double> times;      ///< of the frames, ascending, the last at arrival [s]
   std::vector<Points> positions;  ///< [d × N] each, m
@@ -26,6 +27,9 @@ struct Flight {
 /// One line along every edge of a connected cloth, from particle 0 on; where it cannot go on it
 /// goes back over itself.
 std::vector<Index> stroke_along(const Edges& edges);
+
+/// Of a picture in space: the unit vector to who looks at it.
+Eigen::Vector3d to_the_eye();
 
 /// Points [d × any] as a picture shows them [2 × any], m: those in space from a fixed side.
 Points seen(const Points& points);

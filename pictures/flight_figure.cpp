@@ -7,10 +7,15 @@
 #include <cmath>
 #include <limits>
 
+#include <nuno/crossings.h>
+#include "pictures/sheet_shading.h"
+
 namespace nuno::figures {
 namespace {
 
 constexpr double width = 800;
+constexpr double ghost_opacity = 0.35, target_opacity = 0.7, initial_opacity = 0.75,
+                 over_another = 0.7;
 constexpr double margin = 0.06;  // of the data, around it
 
 struct Extent {
@@ -37,6 +42,8 @@ struct Extent {
   Axis y() const { return {in_space ? "up [m]" : "y [m]", bottom, top}; }
 };
 
+bool is_sheet(const Flight& flight) { return !flight.faces.empty(); }
+
 /// Where the particles are on the plot.
 std::vector<Vec> mapped(const Plot& plot, const Points& points) {
   const Points on_paper = seen(points);
@@ -53,13 +60,36 @@ std::vector<Vec> line_of(const Plot& plot, const Flight& flight, const Points& p
   return line;
 }
 
+double ground_of(const Flight& flight) {
+  return ground_height(flight.positions.front(), flight.target);
+}
+
 Extent extent_of(const std::vector<Flight>& flights) {
   Extent extent;
   for (const Flight& flight : flights) {
     extent.add(flight.target);
-    for (const Points& positions : flight.positions) extent.add(positions);
+    for (const Points& positions : flight.positions) {
+      extent.add(positions);
+      if (is_sheet(flight)) extent.add(shadow_of(positions, ground_of(flight)));
+    }
   }
   return extent.grown();
+}
+
+/// One pose of a cloth: a sheet's faces, a chain's line in these styles.
+void draw_pose(Drawing& drawing, const Plot& plot, const Flight& flight, const Points& pose,
+               const Paint& paint, const std::string& styles) {
+  if (is_sheet(flight)) {
+    drawing.raw(shaded(plot, flight.faces, pose, paint));
+  } else {
+    drawing.line(line_of(plot, flight, pose), styles);
+  }
+}
+
+void draw_shadow(Drawing& drawing, const Plot& plot, const Flight& flight, const Points& pose) {
+  if (is_sheet(flight)) {
+    drawing.raw(soft_shadow(plot, flight.faces, pose, ground_of(flight)));
+  }
 }
 
 std::vector<Vec> centroid_path(const Plot& plot, const Flight& flight) {
@@ -91,10 +121,7 @@ std::string_view final_width(const FlightFigure& options) {
 
 /// A mesh is drawn by many lines: thin ones.
 std::string_view weight(const Flight& flight, std::string_view of_chain) {
-  return flight.target.rows() == 3 ? "thin" : of_chain;
-}
-std::string_view band(const Flight& flight) {
-  return flight.target.rows() == 3 ? "band mesh" : "band";
+  return is_sheet(flight) ? "thin" : of_chain;
 }
 
 std::string style_of(std::size_t i, std::size_t count, std::string_view more) {
@@ -150,7 +177,8 @@ void draw_ghosts(Drawing& drawing, const Plot& plot, const std::vector<Flight>& 
     for (int k = 1; k <= options.ghosts; ++k) {
       const double time = flight.times.back() * k / (options.ghosts + 1);
       const Points pose = positions_at(flight, time);
-      drawing.line(line_of(plot, flight, pose), style_of(i, dashed(flights, options), "ghost"));
+      draw_pose(drawing, plot, flight, pose, {series(i), ghost_opacity},
+                style_of(i, dashed(flights, options), "ghost"));
       if (options.plain) continue;
       const Vec at = mapped(plot, centroid(pose)).front();
       drawing.marker(Marker::circle, at, 4, "soft", Weight::light);
@@ -165,7 +193,7 @@ void draw_ghosts(Drawing& drawing, const Plot& plot, const std::vector<Flight>& 
 void draw_targets(Drawing& drawing, const Plot& plot, const std::vector<Flight>& flights) {
   for (std::size_t i = 0; i < flights.size(); ++i) {
     if (i > 0 && same_target(flights[i - 1], flights[i])) continue;
-    drawing.line(line_of(plot, flights[i], flights[i].target), band(flights[i]));
+    draw_pose(drawing, plot, flights[i], flights[i].target, {"target", target_opacity}, "band");
   }
 }
 
@@ -194,7 +222,9 @@ void draw_arrival(Drawing& drawing, const Box& frame, const std::vector<Flight>&
   const Plot plot = Plot::with_equal_scales(frame, extent.x(), extent.y());
   drawing.text({frame.left, frame.top - 8}, "At arrival, enlarged", Anchor::start, "strong");
   plot.draw_axes(drawing);
-  draw_targets(drawing, plot, flights);
+  for (const Flight& flight : flights) {
+    drawing.line(line_of(plot, flight, flight.target), is_sheet(flight) ? "band mesh" : "band");
+  }
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const Points& final = flights[i].positions.back();
     const std::vector<Vec> places = mapped(plot, final);
@@ -263,19 +293,21 @@ Drawing draw_flights(const std::vector<Flight>& flights, const FlightFigure& opt
     draw_title(drawing, options, flights, true);
     plot.draw_axes(drawing);
   }
+  for (const Flight& flight : flights) draw_shadow(drawing, plot, flight, flight.positions.back());
   draw_targets(drawing, plot, flights);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     if (i > 0 && same_initial(flights[i - 1], flights[i])) continue;
-    drawing.line(line_of(plot, flights[i], flights[i].positions.front()),
-                 fmt::format("soft {}", weight(flights[i], "thick")));
+    draw_pose(drawing, plot, flights[i], flights[i].positions.front(), {"soft", initial_opacity},
+              "soft thick");
   }
   if (!options.plain) {
     for (const Flight& flight : flights) drawing.line(centroid_path(plot, flight), "soft dots");
   }
   draw_ghosts(drawing, plot, flights, options);
   for (std::size_t i = 0; i < flights.size(); ++i) {
-    drawing.line(line_of(plot, flights[i], flights[i].positions.back()),
-                 style_of(i, dashed(flights, options), weight(flights[i], final_width(options))));
+    draw_pose(drawing, plot, flights[i], flights[i].positions.back(),
+              {series(i), i == 0 ? 1 : over_another},
+              style_of(i, dashed(flights, options), final_width(options)));
   }
   if (options.plain) return drawing;
 
@@ -321,8 +353,12 @@ Stage make_stage(const std::vector<Flight>& flights, const FlightFigure& options
     if (!options.plain) {
       stage.drawing.line(centroid_path(stage.plot, flight), "soft dots", Weight::light);
     }
-    stage.drawing.line(line_of(stage.plot, flight, flight.positions.front()), "soft thin",
-                       Weight::light);
+    if (is_sheet(flight)) {
+      stage.drawing.raw(shaded(stage.plot, flight.faces, flight.positions.front(), {"soft", 0.5}));
+    } else {
+      stage.drawing.line(line_of(stage.plot, flight, flight.positions.front()), "soft thin",
+                         Weight::light);
+    }
   }
   return stage;
 }
@@ -338,8 +374,9 @@ Drawing draw_moment(const std::vector<Flight>& flights, double time, const Fligh
   const double end = last_arrival(flights);
   for (std::size_t i = 0; i < flights.size(); ++i) {
     const Points pose = positions_at(flights[i], time);
-    drawing.line(line_of(plot, flights[i], pose),
-                 style_of(i, dashed(flights, options), weight(flights[i], final_width(options))));
+    draw_shadow(drawing, plot, flights[i], pose);
+    draw_pose(drawing, plot, flights[i], pose, {series(i), i == 0 ? 1 : over_another},
+              style_of(i, dashed(flights, options), final_width(options)));
     if (!options.plain && flights.size() == 1) draw_particles(drawing, plot, pose, i);
   }
   if (!options.plain) {

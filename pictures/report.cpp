@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <nuno/crossings.h>
 #include <nuno/optimize.h>
 #include <nuno/parallel.h>
 #include <nuno/scene_file.h>
@@ -17,6 +18,7 @@
 #include "embedded/report_css.h"
 #include "embedded/report_html.h"
 #include "embedded/report_js.h"
+#include "embedded/report_sheet_js.h"
 #include "pictures/gain_figure.h"
 #include "pictures/pareto_figure.h"
 #include "pictures/summary.h"
@@ -110,15 +112,20 @@ Json to_json(const ReportScene& scene) {
   }
   Json times = Json::array();
   for (const double time : first.times) times.push_back(std::round(1e6 * time) / 1e6);
-  return {{"name", scene.comparison.scene},
-          {"particles", first.target.cols()},
-          {"dimension", first.target.rows()},
-          {"stroke", first.stroke},
-          {"length", first.cloth_length},
-          {"unit", unit},
-          {"times", times},
-          {"target", rounded(first.target, unit)},
-          {"choices", choices}};
+  Json json = {{"name", scene.comparison.scene},
+               {"particles", first.target.cols()},
+               {"dimension", first.target.rows()},
+               {"stroke", first.stroke},
+               {"length", first.cloth_length},
+               {"unit", unit},
+               {"times", times},
+               {"target", rounded(first.target, unit)},
+               {"choices", choices}};
+  if (!first.faces.empty()) {
+    json["faces"] = first.faces;
+    json["ground"] = ground_height(first.positions.front(), first.target);
+  }
+  return json;
 }
 
 std::string key(std::size_t engine) {
@@ -183,12 +190,26 @@ std::string readings(const Comparison& comparison) {
   return rows;
 }
 
+/// Where a sheet passes through itself or the ground, on either engine at its best gain.
+std::string crossings_note(const ReportScene& scene) {
+  std::string note;
+  for (const Flight& flight : scene.choices[0].flights) {
+    if (flight.faces.empty()) continue;
+    const FlightCrossings crossings =
+        flight_crossings(flight.times, flight.positions, flight.faces,
+                         ground_height(flight.positions.front(), flight.target));
+    note += fmt::format(" On {} it passes through {}.", engine_name(flight.backend),
+                        crossing_words(crossings, flight.cloth_length));
+  }
+  return note;
+}
+
 std::string section(const ReportScene& scene, std::size_t number) {
   const Comparison& comparison = scene.comparison;
   return fmt::format(
       R"(<section class="scene" id="scene-{number}" aria-label="{name}">
 <h2>{name}</h2>
-<p class="note">{particles} particles, {time} s, L = {length} m</p>
+<p class="note">{particles} particles, {time} s, L = {length} m.{crossings}</p>
 <div class="panels">
 <div>
 <div class="legend"><span>{key_a}{engine_a}</span><span>{key_b}{engine_b}</span><span><span
@@ -237,6 +258,7 @@ L</small></th><th>effort<small>{unit}</small></th></tr></thead>
       fmt::arg("length", shown(comparison.cloth_length)), fmt::arg("key_a", key(0)),
       fmt::arg("key_b", key(1)), fmt::arg("engine_a", engine_name(comparison.rows[0].backend)),
       fmt::arg("engine_b", engine_name(comparison.rows[1].backend)),
+      fmt::arg("crossings", crossings_note(scene)),
       fmt::arg("figure", gain_figure(scene, 440, true)),
       fmt::arg("gains", gain_choices(scene, number)),
       fmt::arg("pareto_front", pareto_figure(scene, 440, true)),
@@ -407,7 +429,8 @@ std::string report_page(const std::vector<ReportScene>& scenes) {
                   ". The page is one file and needs no network. compare.json beside it holds the "
                   "numbers.");
   // The data last: a scene's name may hold anything.
-  page = replaced(page, "/*{script}*/", std::string(embedded::report_js));
+  page = replaced(page, "/*{script}*/",
+                  std::string(embedded::report_sheet_js) + std::string(embedded::report_js));
   return replaced(page, "/*{flights}*/", text_of(flights));
 }
 

@@ -55,6 +55,11 @@ class SceneView {
     this.speed = 1;
     this.playing = 0;
     this.cache = new Map();
+    if (data.faces) {
+      const canvas = document.createElement('canvas');
+      canvas.className = 'sheet';
+      this.painter = new SheetPainter(canvas, data.faces, data.ground);
+    }
 
     this.slider = this.find('time');
     this.button = this.find('play');
@@ -161,6 +166,8 @@ class SceneView {
       }
     };
     add(this.target);
+    const addShadow = (pose) => add(pose.map((value, i) => (i % 3 === 1 ? data.ground : value)));
+    if (this.painter) [this.target, this.frames(0)[0]].forEach(addShadow);
     const chosen = this.choice;
     for (this.choice = 0; this.choice < data.choices.length; ++this.choice) {
       for (const engine of [0, 1]) this.frames(engine).forEach(add);
@@ -199,9 +206,10 @@ class SceneView {
     }
     element(svg, 'text', { x: frame.left + frame.width / 2, y: height - 4, 'text-anchor': 'middle' }, inSpace ? 'across [m]' : 'x [m]');
     element(svg, 'text', { transform: `translate(11 ${frame.top + frame.height / 2}) rotate(-90)`, 'text-anchor': 'middle' }, inSpace ? 'up [m]' : 'y [m]');
-    element(svg, 'polyline', {
-      class: `line band ${inSpace ? 'mesh' : ''}`, points: this.points(this.target),
-    });
+    if (this.painter) {
+      stage.append(this.painter.canvas);
+      this.painter.resize(width, height);
+    } else element(svg, 'polyline', { class: 'line band', points: this.points(this.target) });
     this.over = element(svg, 'g', {});
     this.drawOver();
   }
@@ -294,7 +302,9 @@ class SceneView {
   drawOver() {
     const { over, data } = this;
     over.replaceChildren();
-    element(over, 'polyline', { class: 'line soft thin', points: this.points(this.frames(0)[0]) });
+    if (!this.painter) {
+      element(over, 'polyline', { class: 'line soft thin', points: this.points(this.frames(0)[0]) });
+    }
     const path = this.frames(0).flatMap((pose) => {
       const flat = this.seen(pose);
       let [x, y] = [0, 0];
@@ -302,7 +312,7 @@ class SceneView {
       return [x / data.particles, y / data.particles];
     });
     element(over, 'polyline', { class: 'line soft dots', points: this.line(path) });
-    for (const engine of [0, 1]) {
+    for (const engine of this.painter ? [] : [0, 1]) {
       for (let k = 1; k <= 4; ++k) {
         element(over, 'polyline', {
           class: `line ghost ${engine ? 'b dashes' : 'a'}`,
@@ -312,7 +322,7 @@ class SceneView {
     }
     this.cloths = [0, 1].map((engine) =>
       element(over, 'polyline', {
-        class: `line ${data.dimension === 3 ? 'thin' : 'thick'} ${engine ? 'b dashes' : 'a'}`,
+        class: `line thick ${engine ? 'b dashes' : 'a'}`,
       }));
     this.ring = element(over, 'circle', { class: 'line', r: 11 });
     this.drawApart();
@@ -369,7 +379,9 @@ class SceneView {
     this.find('what').textContent = arrived ? 'error' : 'to the target';
     this.find('what-1').textContent = arrived ? 'error' : 'to the target';
     if (!this.plot) return;
-    poses.forEach((pose, engine) => this.cloths[engine].setAttribute('points', this.points(pose)));
+    if (!this.painter) {
+      poses.forEach((pose, engine) => this.cloths[engine].setAttribute('points', this.points(pose)));
+    }
     // The ring shows the particle that is furthest apart, while it is.
     const step = 0.5 / 60 + this.end / data.times.length;
     const here = Math.abs(time - this.most.time) <= step;
@@ -378,8 +390,22 @@ class SceneView {
     const i = 2 * this.most.particle;
     this.ring.setAttribute('cx', this.plot.x((first[i] + second[i]) / 2));
     this.ring.setAttribute('cy', this.plot.y((first[i + 1] + second[i + 1]) / 2));
+    if (this.painter) this.paintSheet(poses, here);
     this.now.setAttribute('x1', this.nowX(time));
     this.now.setAttribute('x2', this.nowX(time));
+  }
+
+  /// Upon all else of the drawing, the ring too.
+  paintSheet([first, second], hasRing) {
+    const [ca, sa] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
+    const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
+    this.painter.paint([
+      { flat: this.frames(0)[0], color: 'soft', opacity: 0.6 },
+      { flat: this.target, color: 'target', opacity: 0.6 },
+      { flat: second, color: 'b', opacity: 1 },
+      { flat: first, color: 'a', opacity: 0.85, shadow: true },
+    ], { seen: (flat) => this.seen(flat), plot: this.plot, eye: [sa * ce, se, ca * ce] },
+    hasRing ? ['cx', 'cy'].map((name) => Number(this.ring.getAttribute(name))) : null);
   }
 
   play() {

@@ -20,6 +20,23 @@ std::string effort_unit_name(const Cloth& cloth) {
   return cloth.gravity > 0 ? "of a particle's weight" : "of m·L/t0²";
 }
 
+std::string crossing_words(const FlightCrossings& crossings, double size) {
+  const double percent = 100 / size;
+  std::string words = fmt::format("itself in no frame of {}", crossings.frames);
+  if (crossings.crossed_frames > 0) {
+    words =
+        fmt::format("itself in {} of {} frames, first at {:.3g} s; {:.2g} % of L deep at {:.3g} s",
+                    crossings.crossed_frames, crossings.frames, crossings.first_time,
+                    percent * crossings.depth, crossings.deepest_time);
+  }
+  if (crossings.grounded_frames > 0) {
+    words += fmt::format("; the ground in {} frames, first at {:.3g} s, {:.2g} % of L deep",
+                         crossings.grounded_frames, crossings.ground_time,
+                         percent * crossings.ground_depth);
+  }
+  return words;
+}
+
 void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,
                    const Rollout& rollout, double sensitivity) {
   const Cloth& cloth = backend.cloth();
@@ -38,8 +55,17 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
   fmt::print(file, "  {:<17} {:.3g} % at most on the way\n", "strain", 100 * rollout.max_strain);
   fmt::print(file, "  {:<17} {:.3g}-fold growth of a small change at the start\n", "sensitivity",
              sensitivity);
+  if (backend.problem().is_sheet() && !rollout.frame_times.empty()) {
+    const FlightCrossings crossings =
+        flight_crossings(backend.problem(), rollout.frame_times, rollout.frame_positions);
+    fmt::print(file, "  {:<17} {}\n", "passes through", crossing_words(crossings, cloth.size));
+  }
   const std::string warning = fragility(sensitivity);
   if (!warning.empty()) fmt::print(file, "  {}\n", warning);
+  // A fragile flight is another one at any step.
+  if (!warning.empty() || !rollout.step_error) return;
+  const std::string coarse = coarseness(*rollout.step_error, backend.time_step());
+  if (!coarse.empty()) fmt::print(file, "  {}\n", coarse);
 }
 
 }  // namespace nuno

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nuno/crossings.h>
 #include <nuno/rollout.h>
 
 #include <cstdio>
@@ -12,6 +13,9 @@ std::string duration(double seconds);
 
 /// What control effort is measured in, for people.
 std::string effort_unit_name(const Cloth& cloth);
+
+/// Where a sheet passes through itself or the ground, for people; `size` is its L.
+std::string crossing_words(const FlightCrossings& crossings, double size);
 
 /// A few lines for people on what a rollout did, and whether its answer is fragile.
 void print_summary(std::FILE* file, const std::string& scene, const Backend& backend,

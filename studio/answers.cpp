@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <nuno/materials.h>
 #include <nuno/pareto_front.h>
 #include <nuno/scene_file.h>
 
@@ -12,10 +13,13 @@
 #include <iterator>
 
 #include <nuno/conditioning.h>
+#include <nuno/feasibility.h>
 #include <nuno/progress.h>
 #include "formats/result_json.h"
+#include "studio/page_files.h"
 #include "studio/studio_rollout.h"
 #include "studio/throw.h"
+#include "studio/uploads.h"
 
 namespace nuno::studio {
 namespace {
@@ -30,8 +34,8 @@ std::string dump(const Json& value) {
 void append(std::string& text, const Points& points) {
   text += '[';
   for (Index i = 0; i < points.cols(); ++i) {
-    fmt::format_to(std::back_inserter(text), "{}[{:.7g},{:.7g}]", i ? "," : "", points(0, i),
-                   points(1, i));
+    const auto column = points.col(i);
+    fmt::format_to(std::back_inserter(text), "{}[{:.7g}]", i ? "," : "", fmt::join(column, ","));
   }
   text += ']';
 }
@@ -55,12 +59,34 @@ Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
 }
 
 Json to_json(const RefineSummary& refinement) {
-  Points at_arrival = Points::Zero(2, refinement.flight.final.cols());
+  Points at_arrival = Points::Zero(refinement.flight.final.rows(), refinement.flight.final.cols());
   for (const Points& offset : refinement.reference_correction) at_arrival += offset;
   Json result = refinement_head(refinement);
   result["largest_offset"] = at_arrival.colwise().norm().maxCoeff();
   if (std::isfinite(refinement.error_before)) result["error_before"] = refinement.error_before;
   return result;
+}
+
+Json points_json(const Points& points) {
+  Json list = Json::array();
+  for (Index i = 0; i < points.cols(); ++i) {
+    list.push_back(std::vector<double>(points.col(i).begin(), points.col(i).end()));
+  }
+  return list;
+}
+
+/// What the page shows of a sheet alone.
+void add_sheet(Json& head, const Problem& problem, Flight frames) {
+  head["kind"] = "sheet";
+  head["faces"] = problem.sheet().faces;
+  head["ground"] = ground_height(problem.cloth().initial, problem.target);
+  while (!frames.times.empty() && frames.times.back() > (1 + 1e-9) * problem.arrival_time) {
+    frames.times.pop_back();  // what comes after is nobody's wish
+    frames.positions.pop_back();
+  }
+  const FlightCrossings crossings = flight_crossings(problem, frames.times, frames.positions);
+  head["crossings"] = crossings_head(crossings);
+  head["crossings"]["faces"] = crossings.crossed_faces;
 }
 
 /// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.
@@ -78,6 +104,8 @@ std::string drawable(const Throw& done, const Request& request, const Flight& fr
     head["optimization"] = to_json(shown, request.options.optimizer);
   }
   if (done.refined) head["refinement"] = to_json(*done.refined);
+  if (problem.is_sheet()) add_sheet(head, problem, frames);
+  head["remarks"] = verdict(assess(backend));
   std::string text = dump(head);
   text.pop_back();  // the brace: the shapes follow
   text += ",\"initial\":";
@@ -129,8 +157,13 @@ Answer about_answer(const Request&) {
   for (const char* required : {"name", "arrival_time", "initial", "target"}) {
     defaults.erase(required);
   }
+  Json materials = Json::array();
+  for (const NamedMaterial& material : named_materials()) materials.push_back(material.name);
   return {.body = dump({{"version", NUNO_VERSION},
                         {"backends", chain_engines},
+                        {"sheet_backends", sheet_engines},
+                        {"materials", materials},
+                        {"demos", demo_names()},
                         {"optimizers", optimizer_names},
                         {"defaults", defaults}})};
 }
@@ -140,7 +173,27 @@ Answer progress_answer(const Request& request) {
 }
 
 Answer scene_answer(const Request& request) {
-  return {.body = nuno::to_json(parse_scene(request.body, "scene.json"))};
+  const AnyScene scene = parse_whole_scene(request.body, "scene.json");
+  return {.body = std::visit([](const auto& any) { return nuno::to_json(any); }, scene)};
+}
+
+Answer meshes_answer(const Request& request) {
+  const auto [start, end] = read_meshes(request.body);
+  SheetScene scene;
+  scene.arrival_time = 1;  // that of the throw is not known yet
+  const SheetInput sheet =
+      with_meshes(std::move(scene), start.path, start.mesh, end.path, end.mesh, "meshes");
+  Json result = Json::parse(nuno::to_json(sheet));
+  return {.body = dump({{"initial", result["initial"]},
+                        {"target", result["target"]},
+                        {"remarks", sheet.mesh.remarks}})};
+}
+
+Answer drawings_answer(const Request& request) {
+  const Drawings drawn = read_drawings(request.body);
+  Json result = {{"target", points_json(drawn.target)}};
+  if (drawn.initial) result["initial"] = points_json(*drawn.initial);
+  return {.body = dump(result)};
 }
 
 Answer optimize_answer(const Request& request) { return throw_answer(request, std::nullopt); }

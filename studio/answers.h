@@ -30,6 +30,8 @@ Answer diverged_answer(const SceneFile& file, const Backend& backend, const Roll
 Answer about_answer(const Request& request);
 Answer progress_answer(const Request& request);
 Answer scene_answer(const Request& request);
+Answer meshes_answer(const Request& request);
+Answer drawings_answer(const Request& request);
 Answer optimize_answer(const Request& request);
 Answer simulate_answer(const Request& request);
 Answer pareto_front_answer(const Request& request);

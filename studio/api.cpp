@@ -20,10 +20,12 @@ struct Route {
   Answer (*answer)(const Request&);
 };
 
-const std::array<Route, 9> routes = {{
+const std::array<Route, 12> routes = {{
     {"GET", "/api/about", {}, about_answer},
     {"GET", "/api/progress", {"page"}, progress_answer},
     {"POST", "/api/scene", {}, scene_answer},
+    {"POST", "/api/meshes", {}, meshes_answer},
+    {"POST", "/api/drawings", {}, drawings_answer},
     {"POST",
      "/api/optimize",
      {"page", "backend", "optimizer", "warm_start", "refine", "frames", "after"},
@@ -31,6 +33,10 @@ const std::array<Route, 9> routes = {{
     {"POST", "/api/simulate", {"page", "backend", "alpha", "frames", "after"}, simulate_answer},
     {"POST", "/api/pareto_front", {"page", "backend"}, pareto_front_answer},
     {"POST", "/api/result", {"page", "backend", "optimizer", "alpha", "refine"}, result_answer},
+    {"POST",
+     "/api/animation",
+     {"page", "backend", "optimizer", "alpha", "refine", "format"},
+     animation_answer},
     {"POST", "/api/film", {"page", "backend", "optimizer", "alpha", "refine"}, film_answer},
     {"POST", "/api/report", {"page"}, report_answer},
 }};

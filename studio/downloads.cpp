@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include <nuno/animation.h>
 #include <nuno/comparison.h>
 #include <nuno/conditioning.h>
 #include <nuno/output.h>
@@ -74,19 +75,40 @@ Answer result_answer(const Request& request) {
           .file_name = "result.json"};
 }
 
+Answer animation_answer(const Request& request) {
+  const Throw done = throw_cloth(request, request.options.alpha, KeptFrames::of_scene);
+  if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
+  const std::string& format = request.options.format;
+  const double frames_per_second = done.file.scene.frames_per_second;
+  require_animation("flight" + format, done.file.scene.arrival_time, frames_per_second);
+  const Cloth& cloth = done.backend->cloth();
+  const double width = ribbon_width(cloth.size);
+  Animation animation{.name = done.file.scene.name,
+                      .mesh = done.file.mesh ? *done.file.mesh : ribbon_mesh(cloth.initial, width),
+                      .frames_per_second = frames_per_second,
+                      .times = done.flight.frame_times,
+                      .positions = done.flight.frame_positions};
+  if (!done.file.mesh) {
+    for (Points& shape : animation.positions) shape = ribbon(shape, width);
+  }
+  return {.type = format == ".glb" ? "model/gltf-binary" : "application/octet-stream",
+          .body = printed([&](std::FILE* file) { write_animation(file, format, animation); }),
+          .file_name = "flight" + format};
+}
+
 Answer report_answer(const Request& request) {
   const SceneFile file = read_scene(request);
-  const auto native = make_backend("native", file);
-  const auto box2d = make_backend("box2d", file);
-  require_quick(file, *native, request.options);
-  require_quick(file, *box2d, request.options);
-  const Comparison comparison = compare_engines(file.scene.name, *native, *box2d);
+  const auto& [one, other] = engines_for(file.problem);
+  const auto first = make_backend(one, file), second = make_backend(other, file);
+  require_quick(file, *first, request.options);
+  require_quick(file, *second, request.options);
+  const Comparison comparison = compare_engines(file.scene.name, *first, *second);
   if (comparison.divergence) {
     const auto& [backend, flight] = *comparison.divergence;
-    return diverged_answer(file, backend == "native" ? *native : *box2d, flight);
+    return diverged_answer(file, backend == one ? *first : *second, flight);
   }
   return {.type = "text/html; charset=utf-8",
-          .body = report_page({make_report_scene(comparison, *native, *box2d)}),
+          .body = report_page({make_report_scene(comparison, *first, *second)}),
           .file_name = "report.html"};
 }
 

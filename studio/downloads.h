@@ -10,6 +10,9 @@ namespace nuno::studio {
 /// What --out writes: simulate's result where a gain is given, else optimize's.
 Answer result_answer(const Request& request);
 
+/// The flight as a mesh in motion, what `nuno throw` writes.
+Answer animation_answer(const Request& request);
+
 /// Both engines on the scene, as the page that `nuno compare` writes.
 Answer report_answer(const Request& request);
 

@@ -64,7 +64,7 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
     if (name == "page") {
       options.page = text;
     } else if (name == "backend") {
-      options.backend = word(name, text, chain_engines);
+      options.backend = word(name, text, backend_names);
     } else if (name == "optimizer") {
       options.optimizer = word(name, text, optimizer_names);
     } else if (name == "alpha") {
@@ -73,6 +73,8 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
       options.warm_start = number(name, text);
     } else if (name == "refine") {
       options.refine = word(name, text, std::array{"0", "1"}) == "1";
+    } else if (name == "format") {
+      options.format = '.' + word(name, text, std::array{"glb", "pc2", "mdd", "usda"});
     } else if (name == "frames") {
       const double frames = number(name, text);
       if (frames != std::floor(frames) || frames > static_cast<double>(most_frames)) {
@@ -96,7 +98,7 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
 
 SceneFile read_scene(const Request& request) {
   // The name under which the page saves it.
-  SceneFile file = make_scene_file("scene.json", parse_scene(request.body, "scene.json"));
+  SceneFile file = make_scene_file("scene.json", parse_whole_scene(request.body, "scene.json"));
   file.problem.stop = request.turn.token();
   return file;
 }
@@ -110,9 +112,10 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
   const double particles = static_cast<double>(file.problem.cloth().particles());
   if (work_of(backend) > most_particle_steps(backend)) {
     throw InputError(
-        fmt::format("{}: /particles: {} is not few enough for the studio: with {} steps on {}, "
+        fmt::format("{}: /{}: {} particles are not few enough for the studio: with {} steps on {}, "
                     "this is for nuno optimize",
-                    file.path, particles, backend.steps(), backend.name()));
+                    file.path, file.mesh ? "initial" : "particles", particles, backend.steps(),
+                    backend.name()));
   }
   if (options.refine) require_refinable(file);
   if (options.after > most_flights_after * file.scene.arrival_time) {

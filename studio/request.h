@@ -23,6 +23,7 @@ struct Options {
   std::optional<double> alpha;
   std::optional<double> warm_start;
   bool refine = false;
+  std::string format{".glb"};  ///< of an animation
   Index frames = 0;
   double after = 0;
 };

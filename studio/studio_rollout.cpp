@@ -18,7 +18,7 @@ Flight fly(const Backend& backend, const Gains& gains, Index frames, double afte
 
   ReferenceMotion reference(problem, h);
   const auto cloth = backend.start(launch(backend));
-  Points forces = Points::Zero(2, problem.cloth().particles());
+  Points forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
   Flight result;
   Index frame = 0;
   for (Index n = 0; n <= last; ++n) {

@@ -9,8 +9,8 @@ namespace nuno::studio {
 /// A flight to be looked at: frames with the control forces, and how it goes on after arrival.
 struct Flight {
   std::vector<double> times;      ///< [s]
-  std::vector<Points> positions;  ///< [2 × N] each, m
-  std::vector<Points> forces;     ///< of the shape control [2 × N] each, N; none after arrival
+  std::vector<Points> positions;  ///< [d × N] each, m
+  std::vector<Points> forces;     ///< of the shape control [d × N] each, N; none after arrival
 };
 
 /// The flight that `rollout` measures, at `frames` equal intervals until arrival, and for `after`

@@ -194,6 +194,28 @@ TEST(Conditioning, KnowsARolloutWithoutAnAnswer) {
   EXPECT_TRUE(diverged(flight));
 }
 
+TEST(Conditioning, MeasuresWhatHalfTheStepChanges) {
+  // Arrives as a cross of this size, at either step, and elsewhere.
+  const auto engine = [](double size) {
+    return ScriptedBackend(problem_of(cross()), 5, [size](const Moment&) -> Points {
+      return (size * cross()).colwise() + Eigen::Vector2d(7, size);
+    });
+  };
+  const double length = problem_of(cross()).cloth().size;
+  const Rollout flight = rollout(engine(1), 0);
+  EXPECT_NEAR(step_error(engine(1.25), flight), 0.25 / length, 1e-14);
+  EXPECT_EQ(step_error(engine(nan), flight), infinity);
+}
+
+TEST(Conditioning, SaysWhichStepResolvesACoarseFlight) {
+  EXPECT_EQ(coarseness(1e-3, 0.01), "");
+  EXPECT_EQ(coarseness(nan, 0.01), "");
+  EXPECT_NE(coarseness(0.004, 0.01).find("0.4 % of L; a --time-step of 0.005 s resolves it"),
+            std::string::npos);
+  EXPECT_NE(coarseness(0.016, 0.01).find("of 0.0025 s resolves it"), std::string::npos);
+  EXPECT_NE(coarseness(infinity, 0.01).find("or less is worth a try"), std::string::npos);
+}
+
 TEST(Conditioning, TellsWhereAndWhyARolloutDiverged) {
   const ScriptedBackend engine(problem_of(cross()), 5, [](const Moment& now) -> Points {
     return now.step < 3 ? cross() : nan * cross();

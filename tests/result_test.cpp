@@ -85,7 +85,7 @@ TEST_F(Result, HasEveryFieldAndNoNull) {
       "nuno_result",    "scene",       "backend",         "status",       "alpha",
       "time_step",      "steps",       "cloth_length",    "target_scale", "error",
       "control_effort", "final",       "launch_velocity", "target",       "frames",
-      "max_strain",     "sensitivity", "final_velocity"};
+      "max_strain",     "sensitivity", "final_velocity",  "step_error"};
   std::set<std::string> fields;
   for (const auto& item : result.items()) fields.insert(item.key());
   EXPECT_EQ(fields, expected);
@@ -242,12 +242,54 @@ TEST_F(Result, OfAGainTooLargeForTheDefaultStepTakesAShorterOne) {
   EXPECT_LT(strong["time_step"].get<double>(), calm["time_step"].get<double>());
 }
 
-TEST_F(Result, OfARolloutThatDivergesIsExitStatusThreeAndNoFile) {
-  // A stiff thread that its control folds up within a few segments.
+/// A stiff thread that its control folds up within a few segments.
+const Json vee_scene = {{"nuno_scene", 1},
+                        {"particles", 16},
+                        {"arrival_time", 1},
+                        {"gravity", 0},
+                        {"initial", {{0, 1}, {1, 1}}},
+                        {"target", {{0, 0}, {0.5, 0.1}, {0, 0.2}}},
+                        {"cloth", {{"stretch_stiffness", 2e4}, {"air_drag", 0}}}};
+
+TEST_F(Result, IsFlownInShorterStepsWhereThoseOfTheEngineDiverge) {
   const std::string vee = in_folder("vee.json");
-  write_text(vee, R"({"nuno_scene": 1, "particles": 16, "arrival_time": 1, "gravity": 0,
-      "initial": [[0, 1], [1, 1]], "target": [[0, 0], [0.5, 0.1], [0, 0.2]],
-      "cloth": {"stretch_stiffness": 2e4, "air_drag": 0}})");
+  write_text(vee, vee_scene.dump());
+  const Outcome run = nuno({"simulate", vee, "--alpha", "5", "--out", output("result.json")});
+  EXPECT_EQ(run.status, 0) << run.err;
+  EXPECT_NE(run.out.find("it diverges in 800 steps of 1.25 ms"), std::string::npos) << run.out;
+  const Json result = read_json(output("result.json"));
+  EXPECT_GE(result["steps"], 4 * 800);
+  // The bound of energy: about the centroid, control is conservative from rest.
+  EXPECT_LT(result["max_strain"], 0.1);
+}
+
+TEST_F(Result, TellsHowFarItMovesWithHalfOfTheStepAndWhichResolvesIt) {
+  Json scene = read_json(scenes / "hanging-to-arch-32.json");
+  scene["cloth"]["stretch_stiffness"] = 2e5;
+  scene["cloth"]["hinge_stiffness"] = 1e-5;
+  const auto flown = [&]() -> std::pair<Json, std::string> {
+    const std::string path = in_folder("scene.json");
+    write_text(path, scene.dump());
+    const Outcome run = nuno({"simulate", path, "--out", "-"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return {Json::parse(run.out), run.err};
+  };
+  const auto [coarse, words] = flown();
+  EXPECT_GT(coarse["step_error"], 1e-3);
+  const std::string asked = "a --time-step of ";
+  const std::size_t at = words.find(asked);
+  ASSERT_NE(at, std::string::npos) << words;
+  scene["time_step"] = std::stod(words.substr(at + asked.size()));
+  const auto [fine, calm_words] = flown();
+  EXPECT_LT(fine["step_error"], 1e-3);
+  EXPECT_EQ(calm_words.find("coarse"), std::string::npos) << calm_words;
+}
+
+TEST_F(Result, OfARolloutThatDivergesIsExitStatusThreeAndNoFile) {
+  const std::string vee = in_folder("vee.json");
+  Json scene = vee_scene;
+  scene["time_step"] = 1.25e-3;  // is kept
+  write_text(vee, scene.dump());
   const Outcome run = nuno({"simulate", vee, "--alpha", "5", "--out", output("result.json")});
   EXPECT_EQ(run.status, 3);
   EXPECT_EQ(run.out, "");

@@ -117,12 +117,10 @@ TEST_F(SheetRefusal, OfWhatSheetsCannotHaveNamesTheSceneAndTheRule) {
                  "box2d does not fly a sheet", "those that do: native, bullet");
   expect_refused({"simulate", chain, "--backend", "bullet"}, "a.json", chain + ": ",
                  "bullet does not fly a chain", "those that do: native, box2d");
-  expect_refused({"optimize", sheet, "--refine"}, "a.json", sheet + ": /initial: ", "",
-                 "a sheet is not refined");
-  expect_refused({"optimize", sheet, "--coefficients", "2"}, "a.json", sheet + ": /initial: ", "2",
-                 "a sheet takes one gain");
-  expect_refused({"simulate", sheet, "--alpha", "1,2,3"}, "a.json", sheet + ": /initial: ", "3",
-                 "a sheet takes one gain");
+  expect_refused({"optimize", sheet, "--coefficients", "3"}, "a.json", sheet + ": /initial: ", "9",
+                 "vertices are not >= 14, the fewest for 3 coefficients");
+  expect_refused({"simulate", sheet, "--alpha", "1,2,3,4"}, "a.json", sheet + ": /initial: ", "9",
+                 "the fewest for 4 coefficients");
   expect_refused({"simulate", sheet, "--ribbon-width", "0.1"}, "a.glb", "--ribbon-width: ", sheet,
                  "is for a chain");
   expect_refused({"simulate", sheet, "--tail", "1"}, "a.json", "--tail: ", "",

@@ -121,6 +121,17 @@ TEST_F(Throw, IsTheDampedMorphAtItsBestGain) {
   }
 }
 
+TEST_F(Throw, ComesNearerRefined) {
+  const Json alone = result_of(), refined = result_of({"--refine"});
+  const Json& told = refined["optimization"]["refinement"];
+  EXPECT_LT(refined["error"]["mean"], 0.5 * alone["error"]["mean"].get<double>());
+  EXPECT_EQ(told["jacobians"], 0);
+  EXPECT_GT(told["rollouts"], 1);
+  ASSERT_EQ(told["reference_correction"].size(), 4u);
+  EXPECT_EQ(told["reference_correction"][0].size(), refined["final"].size());
+  EXPECT_EQ(told["reference_correction"][0][0].size(), 3u);
+}
+
 TEST_F(Throw, SettlesWhereItIsAskedTo) {
   // How fast the shape still changes as it arrives, about its mean.
   const auto swing = [](const Json& result) {

@@ -2,7 +2,7 @@
 
 import { Chart } from './chart.js';
 import { digits } from './numbers.js';
-import { app, effort_unit, engines, shows } from './state.js';
+import { app, effort_unit, engines, other_engine, shows } from './state.js';
 
 const $ = (id) => document.getElementById(id);
 
@@ -67,9 +67,9 @@ export class Charts {
   }
 
   draw_gain(colors) {
-    const { native, box2d } = app.results;
-    const shown = engines.filter((engine) => app.results[engine]?.curve
-      && (engine === 'native' || (shows('box2d') && app.own_gain && !box2d.stale)));
+    const { native } = app.results;
+    const shown = engines().filter((engine) => app.results[engine]?.curve
+      && (engine === 'native' || (shows(engine) && app.own_gain && !app.results[engine].stale)));
     this.gain.curves = shown.map((engine) => {
       const { curve, key, best } = app.results[engine];
       const { points, dips } = this.points_of(curve);
@@ -78,7 +78,7 @@ export class Charts {
         color: engine === 'native' ? colors.a : colors.b, faint: curve.key !== key,
       };
     });
-    const own = app.engine === 'box2d' && app.own_gain ? box2d?.flight?.alpha : native?.best;
+    const own = app.engine === 'box2d' && app.own_gain ? app.results[other_engine()]?.flight?.alpha : native?.best;
     const alpha = app.alpha ?? own ?? null;
     this.gain.cursor = alpha === null ? null : { x: alpha };
     this.gain.draw(colors);

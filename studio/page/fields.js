@@ -1,29 +1,50 @@
 // The numbers and choices of a scene beside its shapes.
 
-import { app, scene } from './state.js';
+import { is_sheet, scene } from './state.js';
 
 const $ = (id) => document.getElementById(id);
+
+const of_chain = () => !is_sheet(), of_sheet = () => is_sheet();
+
+// The controls that have a name of their own; a scene may have neither.
+const controls = {
+  best: { reference: 'morph', damping_ratio: 0.7 },
+  paper: { reference: 'hold', damping_ratio: 0 },
+};
 
 // A slider's travel: logarithmic where values span decades; `zero` adds 0 at its left end.
 const fields = {
   'throw-sliders': [
     { path: 'arrival_time', label: 'Arrival time t₀', unit: 's', low: 0.2, high: 4, log: true },
     { path: 'gravity', label: 'Gravity', unit: 'm/s²', low: 0, high: 20, step: 0.1 },
-    { path: 'particles', label: 'Particles', unit: '', low: 3, high: 128, step: 1 },
+    { path: 'particles', label: 'Particles', unit: '', low: 3, high: 128, step: 1, when: of_chain },
+    {
+      path: 'control', label: 'Control', words: { best: 'follows a motion (best)', paper: 'the paper’s own', other: 'set below' },
+      read: (s) => Object.keys(controls).find((name) => Object.entries(controls[name]).every(([key, value]) => s[key] === value)) ?? 'other',
+      write: (s, name) => Object.assign(s, controls[name]),
+    },
   ],
   'cloth-sliders': [
-    { path: 'cloth.mass', label: 'Mass', unit: 'kg', low: 0.01, high: 2, log: true },
-    { path: 'cloth.air_drag', label: 'Air drag', unit: 'kg/s', low: 0.001, high: 1, log: true, zero: true },
-    { path: 'cloth.stretch_stiffness', label: 'Stretch stiffness', unit: 'N', low: 5, high: 5000, log: true },
-    { path: 'cloth.stretch_damping', label: 'Stretch damping', unit: 'N·s', low: 1e-5, high: 0.1, log: true, zero: true },
-    { path: 'cloth.hinge_stiffness', label: 'Hinge stiffness', unit: 'N·m²', low: 1e-5, high: 0.1, log: true, zero: true },
-    { path: 'cloth.hinge_damping', label: 'Hinge damping', unit: 'N·m²·s', low: 1e-6, high: 1e-3, log: true, zero: true },
+    { path: 'cloth.mass', label: 'Mass', unit: 'kg', low: 0.01, high: 2, log: true, when: of_chain },
+    { path: 'cloth.air_drag', label: 'Air drag', unit: 'kg/s', low: 0.001, high: 1, log: true, zero: true, when: of_chain },
+    { path: 'cloth.stretch_stiffness', label: 'Stretch stiffness', unit: 'N', low: 5, high: 5000, log: true, when: of_chain },
+    { path: 'cloth.stretch_damping', label: 'Stretch damping', unit: 'N·s', low: 1e-5, high: 0.1, log: true, zero: true, when: of_chain },
+    { path: 'cloth.hinge_stiffness', label: 'Hinge stiffness', unit: 'N·m²', low: 1e-5, high: 0.1, log: true, zero: true, when: of_chain },
+    { path: 'cloth.hinge_damping', label: 'Hinge damping', unit: 'N·m²·s', low: 1e-6, high: 1e-3, log: true, zero: true, when: of_chain },
+    { path: 'cloth.areal_density', label: 'Weight per area', unit: 'kg/m²', low: 0.02, high: 2, log: true, when: of_sheet },
+    { path: 'cloth.air_drag', label: 'Air drag', unit: 'kg/(s·m²)', low: 0.001, high: 1, log: true, zero: true, when: of_sheet },
+    { path: 'cloth.stretch_stiffness', label: 'Stretch stiffness', unit: 'N/m', low: 20, high: 5000, log: true, when: of_sheet },
+    { path: 'cloth.stretch_damping', label: 'Stretch damping', unit: 'N·s/m', low: 1e-4, high: 0.1, log: true, zero: true, when: of_sheet },
+    { path: 'cloth.shear_stiffness', label: 'Shear stiffness', unit: 'N/m', low: 1, high: 2000, log: true, zero: true, when: of_sheet },
+    { path: 'cloth.bending_stiffness', label: 'Bending stiffness', unit: 'N·m', low: 1e-6, high: 1e-2, log: true, zero: true, when: of_sheet },
+    { path: 'cloth.bending_damping', label: 'Bending damping', unit: 'N·m·s', low: 1e-7, high: 1e-4, log: true, zero: true, when: of_sheet },
   ],
   'control-fields': [
-    { path: 'reference', label: 'Pulls towards', words: { hold: 'the target (hold)', morph: 'a motion to it (morph)' } },
+    { path: 'reference', label: 'Pulls towards', words: { hold: 'the target, from the start (hold)', morph: 'a motion to it (morph)' } },
     { path: 'arrival', label: 'Motion arrives', words: { pass: 'in full swing', settle: 'at rest' }, when: (s) => s.reference === 'morph' },
     { path: 'damping_ratio', label: 'Damping ratio ζ', unit: '', low: 0, high: 2, step: 0.01 },
     { path: 'launch', label: 'Launch', words: { ballistic: 'ballistic', inextensible: 'inextensible' } },
+    { path: 'rest', label: 'Unbent shape', words: { initial: 'the start', flat: 'flat' }, when: of_sheet },
     { path: 'target_length', label: 'Target length', words: { fit: 'fit to the cloth', 'as-drawn': 'as drawn' } },
   ],
 };
@@ -51,18 +72,21 @@ function from_travel(field, travel) {
   return Number((low * (high / low) ** Math.max(0, (travel - first) / (slider_steps - first))).toPrecision(3));
 }
 
+const read = (field) => (field.read ? field.read(scene()) : read_field(field.path));
+const write = (field, value) => (field.write ? field.write(scene(), value) : write_field(field.path, value));
+
 // `changed(live)` is called when one of them has changed.
 export function make_fields(changed) {
   for (const [id, list] of Object.entries(fields)) {
     for (const field of list) {
       const row = document.createElement('div');
       row.className = 'field';
-      const name = `field-${field.path.replace('.', '-')}`;
+      const name = `field-${field.path.replace('.', '-')}${field.when === of_sheet ? '-sheet' : ''}`;
       if (field.words) {
         row.innerHTML = `<label for="${name}">${field.label}</label><select id="${name}">${
           Object.entries(field.words).map(([value, text]) => `<option value="${value}">${text}</option>`).join('')}</select>`;
         row.querySelector('select').addEventListener('change', (event) => {
-          write_field(field.path, event.target.value);
+          write(field, event.target.value);
           changed(false);
         });
       } else {
@@ -92,8 +116,9 @@ export function make_fields(changed) {
 export function update_fields() {
   for (const list of Object.values(fields)) {
     for (const field of list) {
-      const value = read_field(field.path);
       field.row.hidden = field.when ? !field.when(scene()) : false;
+      if (field.row.hidden) continue;
+      const value = read(field);
       if (field.words) field.row.querySelector('select').value = value;
       else {
         const [number, range] = field.row.querySelectorAll('input');

@@ -2,9 +2,9 @@
 
 const is_text = (element) => element.matches('input:not([type="range"]):not([type="checkbox"]), select');
 
-// commands: by key, with Ctrl or ⌘; actions: by key. `on_space()`: the key was pressed and nothing
+// shape_key(event): whether the shape took the key; commands: by key, with Ctrl or ⌘; actions: by key. `on_space()`: the key was pressed and nothing
 // was dragged meanwhile.
-export function listen({ editor, stage, commands, actions, on_space, on_escape }) {
+export function listen({ editor, stage, shape_key, commands, actions, on_space, on_escape }) {
   let space_used = false;
   document.addEventListener('keydown', (event) => {
     if (document.querySelector('dialog[open]')) return;
@@ -29,7 +29,7 @@ export function listen({ editor, stage, commands, actions, on_space, on_escape }
       }
       return;
     }
-    if (!(on_control && event.key.startsWith('Arrow')) && editor.key(event)) return event.preventDefault();
+    if (!(on_control && event.key.startsWith('Arrow')) && shape_key(event)) return event.preventDefault();
     const act = actions[event.key] ?? actions[event.key.toLowerCase()];
     if (act) {
       event.preventDefault();

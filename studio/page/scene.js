@@ -16,9 +16,9 @@ export function default_scene() {
       hinge_stiffness: 0.001, hinge_damping: 0,
     },
     launch: 'ballistic',
-    reference: 'hold',
+    reference: 'morph',
     arrival: 'pass',
-    damping_ratio: 0,
+    damping_ratio: 0.7,
     target_length: 'fit',
     frames_per_second: 60,
   };
@@ -28,7 +28,12 @@ export function default_scene() {
 export const file_text = (scene) =>
   '{\n' + Object.entries(scene).map(([key, value]) => ` ${JSON.stringify(key)}: ${JSON.stringify(value)}`).join(',\n') + '\n}\n';
 
-const storage_key = 'nuno-studio-scene';
+// A sheet between two meshes, thrown as `nuno throw` does it.
+export const sheet_scene = (name, { initial, target }) => ({
+  nuno_scene: 1, name, arrival_time: 1, initial, target, launch: 'ballistic', reference: 'morph', damping_ratio: 0.7,
+});
+
+const storage_key = 'nuno-studio-scene', land_key = 'nuno-studio-land';
 const longest_hash = 60000;
 const longest_history = 200;
 
@@ -39,37 +44,43 @@ const from_base64 = (text) =>
   new TextDecoder().decode(
     Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), (c) => c.charCodeAt(0)));
 
-// The scene's text from the URL or, where the URL has none, from the autosave; null without either.
-export function kept_text() {
-  const hash = location.hash.slice(1);
+// What the URL or, where the URL has no scene, the autosave holds: {text: the scene's, null without
+// any; lands: whether it is to land exactly, null where nothing says so}.
+export function kept() {
+  const hash = new URLSearchParams(location.hash.slice(1));
+  const lands_of = (value) => (value === null ? null : value === '1');
   try {
-    if (hash.startsWith('scene=')) return from_base64(hash.slice(6));
+    if (hash.has('scene')) return { text: from_base64(hash.get('scene')), lands: lands_of(hash.get('land')) };
   } catch { /* a damaged link: the autosave is next */ }
   try {
-    return localStorage.getItem(storage_key);
+    return { text: localStorage.getItem(storage_key), lands: lands_of(localStorage.getItem(land_key)) };
   } catch {
-    return null;
+    return { text: null, lands: null };
   }
 }
 
-function keep(text) {
+export function keep(text, lands) {
+  const land = lands ? '1' : '0';
   try {
     localStorage.setItem(storage_key, text);
+    localStorage.setItem(land_key, land);
   } catch { /* storage is off or full; the URL still has the scene */ }
   try {
-    const hash = text.length <= longest_hash ? `#scene=${to_base64(text)}` : location.pathname;
+    const hash = text.length <= longest_hash ? `#scene=${to_base64(text)}&land=${land}` : location.pathname;
     history.replaceState(null, '', hash);
   } catch { /* too many changes a second for the browser; the next one counts */ }
 }
 
 // The scene and its past. `scene` may change freely between two commits.
 export class Document {
-  constructor(scene) {
+  // `kept(text)` is called with every scene that is to be kept.
+  constructor(scene, kept_scene) {
+    this.keep = kept_scene;
     this.scene = scene;
     this.past = [];
     this.future = [];
     this.committed = JSON.stringify(scene);
-    keep(this.committed);
+    this.keep(this.committed);
   }
 
   // What was done since the last commit becomes one step of undo. Says whether anything was.
@@ -80,7 +91,7 @@ export class Document {
     if (this.past.length > longest_history) this.past.shift();
     this.future = [];
     this.committed = text;
-    keep(text);
+    this.keep(text);
     return true;
   }
 
@@ -89,7 +100,7 @@ export class Document {
     onto.push(this.committed);
     this.committed = from.pop();
     this.scene = JSON.parse(this.committed);
-    keep(this.committed);
+    this.keep(this.committed);
     return true;
   }
   undo() { return this.step(this.past, this.future); }

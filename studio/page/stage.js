@@ -40,7 +40,7 @@ function fitted_target() {
 
 // `stroke`: what is being drawn, or null.
 export function draw_stage(view, colors, stroke) {
-  const shown = engines.filter(shows);
+  const shown = engines().filter(shows);
   const cloths = Object.fromEntries(shown.map((engine) => [engine, cloth_of(engine, colors)]));
   const views = app.engine === 'side'
     ? shown.map((engine) => ({ title: engine_names[engine], cloths: [cloths[engine]].filter(Boolean) }))

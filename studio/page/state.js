@@ -5,9 +5,9 @@ export const app = {
   selected: 'target',
   tool: 'move',
   vertex: null,
-  engine: 'native', // native, box2d, over, side
-  own_gain: false, // Box2D searches for itself
-  refines: false, // until the cloth is on the target
+  engine: 'native', // native; box2d: the other one, which is Bullet for a sheet; over, side: both
+  own_gain: false, // the other engine searches for itself
+  refines: true, // until the cloth is on the target
   alpha: null, // a gain tried by hand; null: the best
   // By engine: {flight, key, stale, best, best_throw, search, curve, pareto_front}; a key is the text of the scene
   // that an answer is of.
@@ -18,14 +18,22 @@ export const app = {
   after: true,
   ghosts: true,
   forces: false,
+  wires: false, // of a sheet, instead of its shaded faces
+  errors: false, // of a sheet at arrival, as its color
   speed: 1,
 };
 
-export const engines = ['native', 'box2d'];
-export const engine_names = { native: 'native', box2d: 'Box2D' };
+export const engine_names = { native: 'native', box2d: 'Box2D', bullet: 'Bullet' };
 
 export const scene = () => app.doc.scene;
-export const shows = (engine) => app.engine === engine || app.engine === 'over' || app.engine === 'side';
+export const is_sheet = () => scene().initial.vertices !== undefined;
+// The engines that fly the scene: the project's own and the other.
+export const other_engine = () => (is_sheet() ? 'bullet' : 'box2d');
+export const engines = () => ['native', other_engine()];
+export const shows = (engine) => app.engine === (engine === 'native' ? 'native' : 'box2d') || app.engine === 'over' || app.engine === 'side';
+export const particles = () => (is_sheet() ? scene().initial.vertices.length : scene().particles);
+// L of a throw [m].
+export const length_of = (flight) => flight.cloth_length ?? flight.size;
 
 const flight_after = 0.6; // of the arrival time, how long the cloth flies on
 export const time_after = () => flight_after * scene().arrival_time;

@@ -4,14 +4,17 @@ import { Charts } from './charts.js';
 import { Editor } from './editor.js';
 import { make_fields, update_fields } from './fields.js';
 import { Files, save, validated } from './files.js';
+import { Gallery } from './gallery.js';
 import * as geometry from './geometry.js';
 import { listen } from './keyboard.js';
 import { digits } from './numbers.js';
 import { Player } from './player.js';
-import { default_scene, Document, kept_text } from './scene.js';
+import { default_scene, Document, keep, kept } from './scene.js';
 import { announce, show_scores } from './scores.js';
+import { swap_poses } from './sheet.js';
+import { SpaceStage } from './space_stage.js';
 import { draw_stage, fit_view } from './stage.js';
-import { app, end_time, no_refining, now, scene } from './state.js';
+import { app, end_time, engine_names, is_sheet, no_refining, now, other_engine, scene } from './state.js';
 import { Throws } from './throws.js';
 import { View } from './view.js';
 
@@ -21,9 +24,10 @@ const key_step = 1 / 60; // seconds of the flight
 const trouble_of_a_scene = 8000; // ms that it stays
 const usual_damping = 0.7;
 const shapes = ['initial', 'target'];
-const tools = ['move', 'draw', 'points', 'pan'];
+const tools = ['move', 'turn', 'scale', 'draw', 'points', 'pan'];
+const sheet_tools = ['move', 'turn', 'scale', 'pan'], chain_tools = ['move', 'draw', 'points', 'pan'];
 const engine_views = ['native', 'box2d', 'over', 'side'];
-const toggles = ['loop', 'after', 'ghosts', 'forces'];
+const toggles = ['loop', 'after', 'ghosts', 'forces', 'wires', 'errors'];
 
 // ---------------------------------------------------------------------------------- drawing
 
@@ -33,9 +37,10 @@ let fit_due = false; // once the first flight of a scene is there, its whole way
 
 function read_colors() {
   const style = getComputedStyle(document.documentElement);
-  for (const name of ['paper', 'panel', 'line', 'ink', 'quiet', 'faint', 'grid', 'axis', 'initial', 'target', 'a', 'b', 'force']) {
+  for (const name of ['paper', 'panel', 'line', 'ink', 'quiet', 'faint', 'grid', 'axis', 'initial', 'target', 'a', 'b', 'force', 'bad']) {
     colors[name] = style.getPropertyValue(`--${name}`).trim();
   }
+  colors.shade = Number(style.getPropertyValue('--shade'));
 }
 
 // In the next frame, however often something changes until then: the stage, and with `all` the rest.
@@ -48,7 +53,8 @@ function draw_soon(all = false) {
 function draw() {
   cancelAnimationFrame(frame);
   frame = 0;
-  draw_stage(view, colors, editor.gesture?.kind === 'draw' ? editor.gesture.points : null);
+  if (is_sheet()) space.draw(colors);
+  else draw_stage(view, colors, editor.gesture?.kind === 'draw' ? editor.gesture.points : null);
   show_hint();
   player.show_clock();
   if (!all_due) return;
@@ -58,7 +64,20 @@ function draw() {
   throws.latency.drawn();
 }
 
+function sheet_hint() {
+  if (space.trouble) return space.trouble;
+  if (app.time !== null && app.time > scene().arrival_time * 1.0001) return 'After arrival nothing controls the cloth: it flies on.';
+  if (app.tool === 'pan') return 'Drag to turn the view, scroll or pinch to zoom, drag with the right button to pan.';
+  const verb = { move: 'Move', turn: 'Turn', scale: 'Scale' }[app.tool];
+  return `${verb} the target by its handle: the best throw follows. Drag beside it to turn the view.`;
+}
+
 function show_hint() {
+  const text = is_sheet() ? sheet_hint() : chain_hint();
+  if ($('hint').textContent !== text) $('hint').textContent = text;
+}
+
+function chain_hint() {
   const { initial, target, target_length } = scene();
   const cloth = geometry.length(initial), drawn = geometry.length(target);
   let text;
@@ -80,7 +99,7 @@ function show_hint() {
   } else {
     text = `Drag the ${app.selected}: the best throw follows.`;
   }
-  if ($('hint').textContent !== text) $('hint').textContent = text;
+  return text;
 }
 
 let note_until = 0; // a note about the scene itself stays for a while
@@ -97,7 +116,7 @@ const throws = new Throws({
   shown: () => {
     if (fit_due && app.results.native?.flight) {
       fit_due = false;
-      fit_view(view);
+      fit();
     }
     draw_soon(true);
   },
@@ -113,6 +132,15 @@ const throws = new Throws({
   trouble,
 });
 const player = new Player(draw);
+const space = new SpaceStage({
+  changed: (live, time) => {
+    player.pause();
+    if (live) app.time = null;
+    changed(live, time);
+  },
+  redraw: () => app.doc && draw_soon(),
+});
+const gallery = new Gallery({ open: (demo) => throws.during(validated(JSON.stringify(demo)).then(use, (error) => trouble(error.message))), trouble });
 const files = new Files(throws, { use, trouble });
 const charts = new Charts(try_gain);
 const editor = new Editor($('stage'), view, {
@@ -154,7 +182,9 @@ function changed(live, time = performance.now()) {
 function show_scene() {
   update_fields();
   const { name, cloth, initial, reference, damping_ratio, launch } = scene();
-  $('cloth-note').textContent = `${digits(cloth.mass)} kg, ${digits(geometry.length(initial))} m`;
+  $('cloth-note').textContent = is_sheet()
+    ? `${digits(cloth.areal_density)} kg/m², ${initial.vertices.length} points`
+    : `${digits(cloth.mass)} kg, ${digits(geometry.length(initial))} m`;
   $('control-note').textContent = [reference, damping_ratio ? `ζ ${digits(damping_ratio)}` : '', launch].filter(Boolean).join(', ');
   if (document.activeElement !== $('name')) $('name').value = name ?? '';
   document.title = `${name || 'untitled'} – nuno studio`;
@@ -173,6 +203,26 @@ function choose(group, names, chosen) {
   }
 }
 
+const fit = () => (is_sheet() ? space.fit() : fit_view(view));
+
+// A sheet's stage and tools in place of a chain's.
+async function show_form() {
+  const form = is_sheet() ? 'sheet' : 'chain';
+  document.querySelector('main').dataset.form = form;
+  $('stage').hidden = form === 'sheet';
+  $('space').hidden = form === 'chain';
+  for (const each of document.querySelectorAll('[data-for]')) each.hidden = each.dataset.for !== form;
+  const other = engine_names[other_engine()];
+  $('engine-box2d-name').textContent = other;
+  $('own-name').textContent = `${other} searches its own best α`;
+  if (form === 'chain') return;
+  if (app.engine === 'side') app.engine = 'over';
+  await space.open();
+  space.set_tool(app.tool);
+  fit();
+  draw_soon(true);
+}
+
 function select(name) {
   app.selected = name;
   app.vertex = null;
@@ -182,7 +232,9 @@ function select(name) {
 }
 
 function set_tool(name) {
+  if (!(is_sheet() ? sheet_tools : chain_tools).includes(name)) return;
   app.tool = name;
+  space.set_tool(name);
   for (const each of tools) $(`tool-${each}`).setAttribute('aria-pressed', each === name);
   if (name !== 'pan') player.pause();
   draw_soon();
@@ -194,7 +246,7 @@ function set_engine(name) {
   $('own-row').hidden = name === 'native';
   document.querySelector('main').classList.toggle('beside', name === 'side');
   view.resize(name === 'side' ? 2 : 1);
-  fit_view(view);
+  fit();
   throws.request(false);
   draw_soon(true);
 }
@@ -232,6 +284,7 @@ function try_gain(alpha, live) {
 function refine_on(on) {
   app.refines = on;
   app.alpha = null;
+  keep(app.doc.committed, on);
   throws.request(false);
   draw_soon(true);
 }
@@ -253,11 +306,12 @@ function use(new_scene, text_of_problem) {
     app.doc.scene = new_scene;
     app.doc.commit();
   } else {
-    app.doc = new Document(new_scene);
+    app.doc = new Document(new_scene, (text) => keep(text, app.refines));
   }
   Object.assign(app, { alpha: null, results: {}, time: null, vertex: null });
   player.pause();
   fit_due = true;
+  show_form();
   select('target');
   set_tool('move');
   set_engine(app.engine);
@@ -275,10 +329,13 @@ const actions = {
   },
   undo: () => step_history(app.doc.undo()),
   redo: () => step_history(app.doc.redo()),
-  'fit-view': () => { fit_view(view); draw_soon(); },
+  'fit-view': () => { fit(); draw_soon(); },
+  swap: () => { swap_poses(); changed(false); },
+  gallery: () => gallery.show(),
+  'first-done': () => welcome(false),
   'refine-set': set_up_refining,
   play: () => player.play(!app.playing),
-  new: () => use(default_scene()),
+  new: () => { app.refines = true; use(default_scene()); },
   help: () => $('help-dialog').showModal(),
   theme: () => {
     const next = document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark';
@@ -307,18 +364,24 @@ $('preset').addEventListener('change', (event) => {
   reshape(geometry.preset(event.target.value, geometry.centroid(selected_line()), wanted));
   event.target.value = '';
 });
+$('material').addEventListener('change', async (event) => {
+  const { cloth, ...rest } = scene();
+  app.doc.scene = await throws.during(validated(JSON.stringify({ ...rest, material: event.target.value })));
+  event.target.value = '';
+  changed(false);
+});
 $('name').addEventListener('input', (event) => (scene().name = event.target.value));
 $('name').addEventListener('change', () => { app.doc.commit(); show_scene(); });
 $('name').addEventListener('keydown', (event) => (event.key === 'Enter' || event.key === 'Escape') && event.target.blur());
 
 listen({
-  editor, stage: $('stage'),
+  editor, stage: $('stage'), shape_key: (event) => (is_sheet() ? space.key(event) : editor.key(event)),
   commands: { z: actions.undo, 'shift z': actions.redo, y: actions.redo, s: save, o: () => $('file').click() },
   actions: {
     1: () => select('initial'), 2: () => select('target'),
-    v: () => set_tool('move'), d: () => set_tool('draw'), p: () => set_tool('points'), h: () => set_tool('pan'),
+    v: () => set_tool('move'), t: () => set_tool('turn'), s: () => set_tool('scale'), d: () => set_tool('draw'), p: () => set_tool('points'), h: () => set_tool('pan'),
     r: actions.reverse, f: actions['flip-x'], F: actions['flip-y'], l: actions.snap,
-    0: actions['fit-view'], o: () => toggle('loop'), a: () => toggle('after'), g: () => toggle('ghosts'), c: () => toggle('forces'),
+    0: actions['fit-view'], o: () => toggle('loop'), a: () => toggle('after'), g: () => toggle('ghosts'), c: () => toggle('forces'), w: () => toggle('wires'), x: () => toggle('errors'),
     e: () => set_engine(engine_views[(engine_views.indexOf(app.engine) + 1) % engine_views.length]),
     ',': () => player.go_to(now() - key_step), '.': () => player.go_to(now() + key_step),
     '?': actions.help,
@@ -339,7 +402,13 @@ function kept_theme() {
 dark.addEventListener('change', () => kept_theme() || set_theme(dark.matches ? 'dark' : 'light'));
 
 new ResizeObserver(() => {
+  if (!app.doc || !is_sheet() || !space.space) return;
+  space.space.resize();
+  draw();
+}).observe($('space'));
+new ResizeObserver(() => {
   const was = view.width;
+  if ($('stage').hidden) return;
   view.resize();
   if (!app.doc) return;
   if (was < 10) fit_view(view);
@@ -347,15 +416,29 @@ new ResizeObserver(() => {
 }).observe($('stage'));
 for (const id of ['gain-chart', 'pareto-chart']) new ResizeObserver(() => app.doc && draw_soon(true)).observe($(id));
 addEventListener('hashchange', () => {
-  const text = kept_text();
+  const { text, lands } = kept();
+  if (lands !== null) app.refines = lands;
   if (text && text !== app.doc.committed) files.open_text(text);
 });
+
+// Three steps for who is here for the first time.
+function welcome(shows_it) {
+  $('first').hidden = !shows_it;
+  if (shows_it) return;
+  try { localStorage.setItem('nuno-studio-known', '1'); } catch { /* it comes again */ }
+}
+const is_known = () => {
+  try { return localStorage.getItem('nuno-studio-known') !== null; } catch { return true; }
+};
 
 async function start() {
   set_theme(kept_theme() ?? (dark.matches ? 'dark' : 'light'));
   make_fields(changed);
   for (const name of toggles) $(name).setAttribute('aria-pressed', app[name]);
-  const text = kept_text();
+  const { text, lands } = kept();
+  app.refines = text === null ? true : lands ?? false;
+  welcome(!is_known());
+  fetch('/api/about').then((answer) => answer.json()).then(({ materials }) => $('material').append(...materials.map((each) => new Option(each, each))));
   let opened = null, problem = null;
   try {
     if (text) opened = await validated(text);
@@ -366,6 +449,6 @@ async function start() {
 }
 
 // For the browser test, and for the curious.
-window.nuno_studio = { app, view, latency: throws.latency };
+window.nuno_studio = { app, view, space, latency: throws.latency };
 
 start();

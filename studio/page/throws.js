@@ -3,19 +3,21 @@
 
 import { ask, Channel } from './client.js';
 import { Latency } from './latency.js';
-import { app, no_refining, scene, shows, time_after } from './state.js';
+import { app, is_sheet, length_of, no_refining, other_engine, particles, scene, shows, time_after } from './state.js';
 
 const frames_while_moving = 12;
 const frames_per_second = 60;
 const most_frames = 480;
 const most_points = 300000; // of all frames
-const rest = 150; // ms: a hand that holds still so long gets the whole answer
+// A hand that holds still so long gets the whole answer [ms]; a sheet's takes longer, and is not to
+// stand in the way of the next move.
+const rest = () => (is_sheet() ? 400 : 150);
 
 const body = () => JSON.stringify(scene());
 
 function frames_at_rest() {
   const wished = frames_per_second * scene().arrival_time * 2;
-  return Math.max(2, Math.round(Math.min(most_frames, most_points / scene().particles, wished)));
+  return Math.max(2, Math.round(Math.min(most_frames, most_points / particles(), wished)));
 }
 
 export class Throws {
@@ -23,7 +25,7 @@ export class Throws {
   constructor(on) {
     this.on = on;
     this.channels = Object.fromEntries(
-      ['native', 'box2d', 'curve', 'pareto_front', 'file'].map((name) => [name, new Channel(name, () => this.settle())]));
+      ['native', 'box2d', 'bullet', 'curve', 'pareto_front', 'file'].map((name) => [name, new Channel(name, () => this.settle())]));
     this.latency = new Latency();
     this.rest_due = 0;
     this.at_rest = true;
@@ -66,11 +68,14 @@ export class Throws {
     const follows = live && native !== undefined;
     const after_native = (got) => {
       this.take('native', got);
-      this.request_box2d(live, sampled, run);
-      if (live) this.rest_due = setTimeout(() => this.request(false), rest);
+      this.request_other(live, sampled, run);
+      if (live) this.rest_due = setTimeout(() => this.request(false), rest());
       else this.request_pareto_front(run);
     };
-    if (app.alpha === null) {
+    if (follows && app.alpha === null && is_sheet()) {
+      // One flight and no search: the best gain hardly changes under the hand.
+      run('native', 'simulate', () => ({ alpha: app.results.native.best, ...sampled() }), after_native);
+    } else if (app.alpha === null) {
       run('native', 'optimize', () => ({ ...sampled(), ...corrected(), ...(follows ? { warm_start: app.results.native.best } : {}) }), (got) => {
         this.take_search('native', got, !follows);
         after_native(got);
@@ -87,18 +92,19 @@ export class Throws {
     this.settle();
   }
 
-  // Box2D with the gain of native waits for it; its own search waits for rest.
-  request_box2d(live, sampled, run) {
-    if (!shows('box2d')) return;
+  // The other engine with the gain of native waits for it; its own search waits for rest.
+  request_other(live, sampled, run) {
+    const other = other_engine();
+    if (!shows(other)) return;
     const own = app.alpha === null && app.own_gain;
-    if (own && app.results.box2d) app.results.box2d.stale = true;
+    if (own && app.results[other]) app.results[other].stale = true;
     if (own && live) return;
     const done = (got) => {
-      if (own) this.take_search('box2d', got, true);
-      this.take('box2d', got);
+      if (own) this.take_search(other, got, true);
+      this.take(other, got);
     };
-    if (own) run('box2d', 'optimize', () => ({ backend: 'box2d', ...sampled() }), done);
-    else run('box2d', 'simulate', () => ({ backend: 'box2d', alpha: app.alpha ?? app.results.native?.best, ...sampled() }), done);
+    if (own) run(other, 'optimize', () => ({ backend: other, ...sampled() }), done);
+    else run(other, 'simulate', () => ({ backend: other, alpha: app.alpha ?? app.results.native?.best, ...sampled() }), done);
   }
 
   request_pareto_front(run) {
@@ -126,7 +132,7 @@ export class Throws {
     const result = (app.results[engine] ??= {});
     result.best = alpha;
     result.search = { evaluations, seconds };
-    if (whole) result.curve = { history, best: alpha, length: answer.cloth_length, key };
+    if (whole) result.curve = { history, best: alpha, length: length_of(answer), key };
   }
 
   failed(channel, error) {

@@ -337,7 +337,7 @@ export function at_time(frames, time) {
     times[middle] <= time ? (low = middle) : (high = middle);
   }
   const t = (time - times[low]) / (times[high] - times[low]);
-  const mix = (a, b) => a.map((p, i) => [p[0] + t * (b[i][0] - p[0]), p[1] + t * (b[i][1] - p[1])]);
+  const mix = (a, b) => a.map((p, i) => p.map((x, k) => x + t * (b[i][k] - x)));
   // Forces do not mix over the arrival, where they end.
   return { shape: mix(positions[low], positions[high]), forces: t < 0.5 ? forces[low] : forces[high] };
 }

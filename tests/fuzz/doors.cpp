@@ -1,61 +1,29 @@
-#include <utility>  // Asio forgets it
-
 #include "fuzz/doors.h"
 
+#include <nuno/drawing.h>
 #include <nuno/engines.h>
-#include <nuno/glb_file.h>
-#include <nuno/native.h>
 #include <nuno/output.h>
 #include <nuno/rollout.h>
 #include <nuno/scene_file.h>
 
-#include <boost/asio/buffer.hpp>
-#include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/string_body.hpp>
-
-#include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <mutex>
-#include <nlohmann/json.hpp>
-#include <stop_token>
-#include <thread>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "pictures/drawn_result.h"
 #include "pictures/flight_figure.h"
-#include "studio/connection.h"
-#include "studio/site.h"
+#include "temporary_folder.h"
 
 namespace nuno::fuzz {
 namespace {
 
 constexpr double little_work = 2e4;  // particle-steps
-constexpr int port = 8471;
-
-void require(bool right, const char* what, const std::string& about) {
-  if (right) return;
-  std::fprintf(stderr, "%s: %s\n", what, about.substr(0, 2000).c_str());
-  std::abort();
-}
 
 void require_text(const std::string& text) {
   require(printable(text) == text, "not one line of UTF-8", text);
-}
-
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// A folder with the meshes that the sheet scenes of the seeds name.
-const std::string& folder() {
-  static const std::string path = NUNO_SCENES "/sheets";
-  return path;
 }
 
 void fly(const SceneFile& file) {
@@ -72,34 +40,104 @@ void fly(const SceneFile& file) {
   }
 }
 
-bool enter_scene(const std::string& input, bool sheet) {
-  AnyScene scene = sheet ? parse_any_scene(input, folder() + "/scene.json")
-                         : AnyScene(parse_scene(input, "scene.json"));
-  if (auto* chain = std::get_if<ChainScene>(&scene)) {
-    const std::string written = to_json(*chain);
-    require(to_json(parse_scene(written, "written.json")) == written, "not read as written",
-            written);
-    if (chain->particles > 10'000) return true;  // resampling them takes its time
+/// A scene as a throw would have it, but short.
+template <typename AScene>
+AScene short_scene() {
+  AScene scene;
+  scene.arrival_time = 0.1;
+  return scene;
+}
+
+void fly_drawing(const std::string& initial, const std::string& target) {
+  ChainScene scene = short_scene<ChainScene>();
+  scene.particles = 8;
+  fly(make_scene_file("drawing", with_drawings(std::move(scene), initial, target, "drawing")));
+}
+
+void fly_mesh(const std::string& initial, const std::string& target) {
+  const SheetInput input = with_meshes(short_scene<SheetScene>(), initial, target, "mesh");
+  for (const std::string& remark : input.mesh.remarks) require_text(printable(remark));
+  fly(make_scene_file("mesh", input));
+}
+
+/// The input as a file, in a folder with nothing else in it.
+std::string written(const std::string& input, const std::string& name) {
+  static const TemporaryFolder folder;
+  const std::string path = folder / name;
+  std::ofstream(path, std::ios::binary) << input;
+  return path;
+}
+
+/// Whether `work` is done; not where it refuses.
+template <typename Work>
+bool is_let_in(const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const InputError& error) {
+    require_text(printable(error.what()));  // as people see it: a name may hold any byte
+    return false;
   }
+}
+
+}  // namespace
+
+void require(bool right, const char* what, std::string_view about) {
+  if (right) return;
+  const std::string shown(about.substr(0, 2000));
+  std::fprintf(stderr, "%s: %s\n", what, shown.c_str());
+  std::abort();
+}
+
+bool enter_scene(const std::string& input, Patience) {
+  ChainScene scene = parse_scene(input, "scene.json");
+  const std::string json = to_json(scene);
+  require(to_json(parse_scene(json, "written.json")) == json, "not read as written", json);
+  if (scene.particles > 10'000) return true;  // resampling them takes its time
   fly(make_scene_file("scene.json", std::move(scene)));
   return true;
 }
 
-bool enter_mesh(const std::string& input) {
-  Mesh mesh = parse_obj(input, "mesh.obj");
-  require_same_faces(mesh, "mesh.obj", mesh, "mesh.obj");
-  cut_polygons(mesh);
-  SheetScene scene;
-  scene.arrival_time = 0.1;
-  scene.initial = scene.target = mesh.vertices;
-  scene.faces = mesh.faces;
-  validate(scene, "mesh.obj");
-  const SceneFile file = make_scene_file("mesh.obj", SheetInput{scene, mesh});
-  fly(file);
+bool enter_sheet_scene(const std::string& input, Patience) {
+  AnyScene scene = parse_any_scene(input, NUNO_SCENES "/sheets/scene.json");
+  if (const auto* chain = std::get_if<ChainScene>(&scene)) return chain->particles > 0;
+  fly(make_scene_file("scene.json", std::move(scene)));
   return true;
 }
 
-bool enter_result(const std::string& input) {
+bool enter_obj(const std::string& input, Patience) {
+  const std::string path = written(input, "input.obj");
+  is_drawing(path) ? fly_drawing(path, path) : fly_mesh(path, path);
+  return true;
+}
+
+bool enter_ply(const std::string& input, Patience) {
+  const std::string path = written(input, "input.ply");
+  fly_mesh(path, path);
+  return true;
+}
+
+bool enter_gltf(const std::string& input, Patience) {
+  const std::string path = written(input, "input.glb");
+  const bool has_pose = is_let_in([&] { fly_mesh(path, path + "#"); });  // its only morph target
+  if (!has_pose) fly_mesh(path, path);
+  return true;
+}
+
+bool enter_svg(const std::string& input, Patience) {
+  const std::string path = written(input, "input.svg");
+  const bool has_two = is_let_in([&] { fly_drawing(path + "#initial", path + "#target"); });
+  if (!has_two) fly_drawing(path, path);
+  return true;
+}
+
+bool enter_csv(const std::string& input, Patience) {
+  const std::string path = written(input, "input.csv");
+  fly_drawing(path, path);
+  return true;
+}
+
+bool enter_result(const std::string& input, Patience) {
   if (is_scene(input, "result.json")) return false;
   const std::vector flights = {parse_result(input, "result.json")};
   if (flights[0].positions.size() * static_cast<std::size_t>(flights[0].target.cols()) > 2000) {
@@ -116,126 +154,9 @@ bool enter_result(const std::string& input) {
   return true;
 }
 
-void require_answer(const studio::Answer& answer) {
-  require(answer.status >= 200 && answer.status < 600, "no status", answer.body);
-  require(answer.status != 500, "the studio failed", answer.body);
-  if (answer.type == "application/json") {
-    require(nlohmann::json::accept(answer.body), "an answer is no JSON", answer.body);
-    require(!answer.body.starts_with(R"({"error":"--)"), "speaks of an option", answer.body);
-  }
-}
-
-/// The answer to work that is ended after a while, as by a client that leaves.
-studio::Answer done_in_time(const studio::Work& work, std::chrono::milliseconds patience) {
-  std::mutex mutex;
-  std::condition_variable_any ended;
-  const std::jthread leaves([&](std::stop_token stop) {
-    std::unique_lock lock(mutex);
-    ended.wait_for(lock, stop, patience, [] { return false; });
-    work.turn.end();
-  });
-  return work.run();
-}
-
-bool enter_page(const std::string& input, std::chrono::milliseconds patience) {
-  namespace http = boost::beast::http;
-  static studio::Site site(port);
-  http::request_parser<http::string_body> parser;
-  parser.header_limit(studio::largest_head);
-  parser.body_limit(studio::largest_body);
-  parser.eager(true);
-  boost::system::error_code error;
-  parser.put(boost::asio::buffer(input), error);
-  if (!parser.is_header_done()) return false;
-  const studio::Head head = studio::head_of(parser.get().base());
-  if (const auto refusal = site.refused(head)) {
-    require_answer(*refusal);
-    return false;
-  }
-  if (head.method != "POST") {
-    require_answer(site.get(head));
-    return true;
-  }
-  if (error || !parser.is_done()) return false;
-  const auto asked = site.post(head, parser.get().body());
-  const auto* const work = std::get_if<studio::Work>(&asked);
-  const studio::Answer answer =
-      work ? done_in_time(*work, patience) : std::get<studio::Answer>(asked);
-  require_answer(answer);
-  return answer.status == 200;
-}
-
-std::string request(const std::string& line, const std::string& fields, const std::string& body) {
-  return line + " HTTP/1.1\r\nHost: 127.0.0.1:8471\r\n" + fields +
-         (body.empty() ? "" : "Content-Length: " + std::to_string(body.size()) + "\r\n") + "\r\n" +
-         body;
-}
-
-const char* const chain =
-    R"({"nuno_scene":1,"name":"a","particles":8,"arrival_time":0.2,"gravity":9.8,)"
-    R"("initial":[[0,0],[1,0]],"target":[[1,0],[1.5,0.5],[1,1]],"cloth":{"mass":0.1,)"
-    R"("air_drag":0.05,"stretch_stiffness":200,"hinge_stiffness":1e-3,"hinge_damping":0},)"
-    R"("launch":"ballistic","reference":"morph","arrival":"settle","damping_ratio":0.7,)"
-    R"("target_length":"fit","time_step":0.001,"frames_per_second":60})";
-
-const char* const sheet =
-    R"({"nuno_scene":1,"arrival_time":0.05,"initial":"square-to-s-start.obj",)"
-    R"("target":"square-to-s-target.obj","material":"cotton","rest":"flat",)"
-    R"("cloth":{"areal_density":0.15,"bending_stiffness":1e-4},"time_step":0.001})";
-
-const char* const result =
-    R"({"nuno_result":1,"scene":"ü","backend":"native","status":"ok","alpha":0.1,)"
-    R"("cloth_length":1,"error":{"mean":0.01,"max":0.02},"launch_velocity":[[1,2],[1,2],[1,2]],)"
-    R"("target":[[2,1],[2.5,1.3],[3,1]],"final":[[2,1],[2.5,1.2],[3,1]],"frames":{"times":)"
-    R"([0,0.5],"positions":[[[0,1],[0.5,1],[1,1]],[[2,1],[2.5,1.2],[3,1]]]}})";
-
-}  // namespace
-
-std::vector<std::string> seeds(Door door) {
-  switch (door) {
-    case Door::scene:
-      return {chain, read_text(NUNO_SCENES "/s-curve-32.json")};
-    case Door::sheet_scene:
-      return {sheet, read_text(folder() + "/square-to-s.json")};
-    case Door::mesh:
-      return {"v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 1\nf 1/1 2/2 3/2 4/1\n",
-              "# a\no b\nv 0 0 0\nv 1 0 0 1\nv 1 0.5 1\nv 0 0 1\nv 0.5 0 2\nvn 0 1 0\n"
-              "f 1//1 2//1 3//1\nf -3 -2 \\\n -5\nf 4 3 5\n"};
-    case Door::result:
-      return {result};
-    case Door::page_request:
-      break;
-  }
-  const std::string json = "Content-Type: application/json\r\n";
-  return {request("POST /api/optimize?page=a&frames=3&after=0.1", json, chain),
-          request("POST /api/simulate?alpha=0.1&backend=box2d", json, chain),
-          request("POST /api/optimize?warm_start=0.1&refine=1", json, chain),
-          request("POST /api/result?optimizer=steepest-descent", json, chain),
-          request("POST /api/pareto_front", json + "Origin: http://localhost:8471\r\n", chain),
-          request("POST /api/scene", json, chain),
-          request("GET http://127.0.0.1:8471/api/progress?page=%41", "", ""),
-          request("POST /api/scene", json + "Transfer-Encoding: chunked\r\n", "") +
-              "4\r\n{\"a\"\r\n0\r\nX: y\r\n\r\n"};
-}
-
-bool enter(Door door, const std::string& input, std::chrono::milliseconds patience) {
-  try {
-    switch (door) {
-      case Door::scene:
-        return enter_scene(input, false);
-      case Door::sheet_scene:
-        return enter_scene(input, true);
-      case Door::mesh:
-        return enter_mesh(input);
-      case Door::result:
-        return enter_result(input);
-      case Door::page_request:
-        return enter_page(input, patience);
-    }
-  } catch (const InputError& error) {
-    require_text(printable(error.what()));  // as people see it: a name may hold any byte
-  }
-  return false;
+bool enter(const Door& door, const std::string& input, Patience patience) {
+  bool is_answered = false;
+  return is_let_in([&] { is_answered = door.enter(input, patience); }) && is_answered;
 }
 
 }  // namespace nuno::fuzz

@@ -2,8 +2,12 @@
 
 #include <nuno/gains.h>
 #include <nuno/problem.h>
+#include <nuno/rollout_gradient.h>
 
+#include <array>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -88,6 +92,9 @@ class Backend {
   double largest_gain() const { return do_largest_gain(); }
   DragRecurrence drag_recurrence() const { return do_drag_recurrence(); }
 
+  /// The problem's low modes where there are `groups` groups, found when they are first asked for.
+  const LowModes& low_modes(Index groups) const;
+
   /// A cloth at these positions (the initial ones, if they are left out) with these velocities
   /// [d × N], m and m/s. Its edges are at rest at the lengths of the problem's cloth.
   std::unique_ptr<Simulation> start(const Points& positions, const Points& velocities) const {
@@ -123,6 +130,21 @@ class Backend {
     return do_jacobian(gain, directions);
   }
 
+  /// Whether `gradient` is there: an engine that knows the adjoint of its steps.
+  bool has_gradient() const { return do_has_gradient(); }
+
+  /// The flight at one gain from the initial positions, and the gradient of a quantity J of it, of
+  /// which `cotangent_at` is asked once, after the flight. Costs a few flights however many
+  /// directions there are, and memory as the root of the number of steps.
+  RolloutGradient gradient(double gain, const CotangentAt& cotangent_at) const {
+    return do_gradient(gain, cotangent_at);
+  }
+  /// Of J = Σ ⟨arrival_cotangent, final positions⟩, both [d × N]: a product with the transposed
+  /// Jacobian.
+  RolloutGradient gradient(double gain, const Points& arrival_cotangent) const;
+  /// Of E [m].
+  RolloutGradient error_gradient(double gain) const;
+
   /// `errors` and `error_samples` at many values of one gain for all modes.
   std::vector<double> errors(std::span<const double> gains) const;
   std::vector<ErrorSample> error_samples(std::span<const double> gains) const;
@@ -146,10 +168,17 @@ class Backend {
   virtual bool do_has_derivatives() const { return false; }
   virtual std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const;
   virtual RolloutJacobian do_jacobian(double gain, const CorrectionDirections& directions) const;
+  virtual bool do_has_gradient() const { return false; }
+  virtual RolloutGradient do_gradient(double gain, const CotangentAt& cotangent_at) const;
 
   std::string_view name_;
   Problem problem_;
   Index steps_;
+  struct Found {
+    std::once_flag once;
+    std::optional<LowModes> modes;
+  };
+  mutable std::array<Found, most_groups> low_modes_;
 };
 
 }  // namespace nuno

@@ -16,6 +16,10 @@ ArrivalError arrival_error(const Points& final, const Points& target);
 /// The same of a cloth whose masses may differ: `centroid` is of the mass centres.
 ArrivalError arrival_error(const Cloth& cloth, const Points& final, const Points& target);
 
+/// The derivative of the mean by the final positions [d × N]: residual/|residual|/N, 0 where a
+/// particle has arrived.
+Points error_cotangent(const Points& final, const Points& target);
+
 /// Mean and largest distance of two shapes [d × N] with their centroids aligned [m].
 struct ShapeDifference {
   double mean = 0;

@@ -2,6 +2,8 @@
 
 #include <nuno/backend.h>
 
+#include <vector>
+
 namespace nuno {
 
 /// Velocities that bring each particle from `from` to `to` [d × N] in `arrival_time` under gravity
@@ -36,5 +38,11 @@ Points without_stretching(const Problem& problem, const Points& velocities);
 /// and the centroid on its ballistic path; a reference correction changes either as it begins to
 /// move the reference, and `inextensible` removes what stretches.
 Points launch(const Backend& backend);
+
+/// What a quantity gains by the reference corrections of a problem, from what it gains by their
+/// offsets about the mass centre, `by_offsets` [d × N each], per m, and by the launch, `by_launch`
+/// [d × N], per m/s: the transpose of what ReferenceMotion and `launch` make of a correction.
+std::vector<Points> correction_cotangents(const Problem& problem, std::vector<Points> by_offsets,
+                                          const Points& by_launch);
 
 }  // namespace nuno

@@ -5,7 +5,9 @@
 #include <nuno/sheet_morph.h>
 
 #include <array>
+#include <memory>
 #include <variant>
+#include <vector>
 
 namespace nuno {
 
@@ -15,6 +17,9 @@ namespace nuno {
 inline constexpr std::array<int, 4> correction_powers = {1, 6, 36, 216};
 using CorrectionShares = std::array<double, correction_powers.size()>;
 
+/// The rates at which the corrections come in at t = 0 [1/s].
+CorrectionShares correction_rates_at_start(double arrival_time);
+
 /// The shape that control pulls towards, step by step, about its own mass centre.
 ///
 /// `hold` is the paper's: the target from the first step on. `morph` moves from the initial shape
@@ -23,7 +28,7 @@ using CorrectionShares = std::array<double, correction_powers.size()>;
 /// arrives with the shape at rest. Reference corrections δₖ of the problem are added to either
 /// reference as Σ wₖ·δₖ, w = (t/t₀)^correction_powers (see refine.h).
 ///
-/// A copyable value that is advanced step by step.
+/// A copyable value that is advanced step by step; copies share what does not change.
 class ReferenceMotion {
  public:
   ReferenceMotion(const Problem& problem, double time_step);
@@ -57,10 +62,9 @@ class ReferenceMotion {
   Points shape_;
   Points velocity_;
   std::stop_token stop_;
-  Vector relative_mass_;
   /// The way without corrections: a shape that is held, or a motion.
-  std::variant<Points, ChainMorph, SheetMorph> way_;
-  std::vector<Points> offsets_;  ///< δ about their mass centres, or empty
+  std::variant<std::shared_ptr<const Points>, ChainMorph, SheetMorph> way_;
+  std::shared_ptr<const std::vector<Points>> offsets_;  ///< δ about their mass centres, or none
 };
 
 }  // namespace nuno

@@ -51,6 +51,12 @@ double tracking_gain(const Backend& backend);
 /// flies; `model`, which may be another engine, gives the jacobians (exact for the native chain),
 /// each used as long as it foretells what happens: an answer of the chain is corrected on an engine
 /// that knows no derivative. Starts from the problem's reference correction.
+///
+/// A sheet takes no Jacobian, nor `model`: a quasi-Newton method on the residual whose first
+/// estimate is the sheet's own stiffness about its target, see sheet_refinement.cpp. It arrives
+/// within 1e-6·L, or the tolerance if that is more, in a dozen or two of flights; the last of them
+/// that came nearer is the answer. It does not lower the effort of the flight that it starts from,
+/// and under an effort limit comes as near as that lets it.
 RefineSummary refine(const Problem& problem, double gain, const MakeBackend& make,
                      const MakeBackend& model, const RefineOptions& options = {});
 

@@ -3,6 +3,7 @@
 #include <nuno/backend.h>
 #include <nuno/error.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct Rollout {
   ArrivalError error;         ///< infinite where the rollout diverged
   double control_effort = 0;  ///< rms over particles and time of control force / particle weight
   double max_strain = 0;      ///< largest |l/ℓ − 1| of an edge on the way
+  std::optional<double> step_error;     ///< where it was measured, see conditioning.h [1]
   std::vector<double> frame_times;      ///< [s]
   std::vector<Points> frame_positions;  ///< [d × N] each, m
   Index diverged_at_step = 0;           ///< the first step with a bad value

@@ -23,13 +23,17 @@ double shape_damping(double damping_ratio, double gain, double particle_mass);
 /// The control force of a problem under gains that differ by group. With o what is missing of the
 /// shape, the reference about its mass centre less the cloth about its own, and ȯ the same of the
 /// velocities,
-///     p = α·o + β·ȯ + Σⱼ ((αⱼ − α)·⟨φⱼ, o⟩ + (βⱼ − β)·⟨φⱼ, ȯ⟩)·φⱼ
-/// over the low modes φⱼ; α is the last group's gain and each gain has its own shape_damping β. A
-/// particle of mass mᵢ gets the force (mᵢ/m̄)·pᵢ, so that all sum to zero and the mass centre flies
-/// alone. A mode of a group feels that group's gain alone, and one group is equation (3).
+///     p = α·o + β·ȯ + Σⱼ ((αⱼ − α)·⟨φⱼ, o⟩ₘ + (βⱼ − β)·⟨φⱼ, ȯ⟩ₘ)·φⱼ
+/// over the low modes φⱼ, with ⟨a, b⟩ₘ = Σᵢ (mᵢ/m̄)·aᵢ·bᵢ; α is the last group's gain and each gain
+/// has its own shape_damping β. A particle of mass mᵢ gets the force (mᵢ/m̄)·pᵢ, so that all sum to
+/// zero and the mass centre flies alone. A mode of a group feels that group's gain alone, and one
+/// group is equation (3).
 class ShapeControl {
  public:
-  ShapeControl(const Problem& problem, const Gains& gains);
+  ShapeControl(const Problem& problem, const Gains& gains)
+      : ShapeControl(problem, gains, LowModes(problem, gains.count())) {}
+  /// The same with the problem's low modes for so many groups.
+  ShapeControl(const Problem& problem, const Gains& gains, LowModes modes);
 
   /// Whether any gain is above zero.
   bool pulls() const { return pulls_; }

@@ -3,6 +3,7 @@
 #include <nuno/backend.h>
 #include <nuno/optimize.h>
 #include <nuno/refine.h>
+#include <nuno/rollout.h>
 #include <nuno/scene_file.h>
 
 #include <array>
@@ -37,7 +38,7 @@ void require_few_frames(const SceneFile& file, double more = 0);
 /// Throws InputError where so long a flight after arrival [s] would take hours.
 void require_short_tail(const Backend& backend, double tail);
 
-/// Throws InputError for a scene that refine_on cannot take: a sheet, or too large a chain.
+/// Throws InputError for a scene that refine_on cannot take: too large a chain.
 void require_refinable(const SceneFile& file);
 
 /// Throws InputError if the scene's particles have too few modes for so many groups of them.
@@ -85,11 +86,26 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
 std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const SceneFile& file,
                                                double gain, std::string_view option = "--alpha");
 
+/// The backend's engine at `share` of its step, for the scene; null where its flight would take
+/// hours.
+std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& file, double share);
+
+/// A rollout, and the engine that flew it.
+struct ResolvedRollout {
+  std::unique_ptr<Backend> finer;  ///< null: the one that was asked
+  Rollout flight;
+};
+
+/// A rollout of the scene on its backend. Where it diverges, and the scene leaves the step to the
+/// engine, it is flown at a quarter and at a sixteenth of the step.
+ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
+                                 const RolloutOptions& options = {});
+
 /// Makes the engine called `name` for the scene's problem corrected elsewhere, see refine.h; `name`
 /// and `file` must outlive it.
 MakeBackend backend_maker(std::string_view name, const SceneFile& file);
 
-/// Refines on the native chain at its tracking gain, and transfers the answer to the engine
+/// Refines on the native engine at its tracking gain, and transfers the answer to the engine
 /// called `name`.
 RefineSummary refine_on(std::string_view name, const SceneFile& file,
                         const RefineOptions& options = {});

@@ -3,6 +3,7 @@
 #include <nuno/mesh.h>
 
 #include <array>
+#include <cstdio>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,8 +35,14 @@ bool is_animation(std::string_view path);
 /// at `arrival_time` [s], in those that number their frames; no # in the name of numbered files.
 void require_animation(const std::string& path, double arrival_time, double frames_per_second);
 
+/// Writes the file of one of animation_extensions but .obj, which takes several.
+void write_animation(std::FILE* file, std::string_view extension, const Animation& animation);
+
 /// Writes the file or files, each whole or not at all. Throws OutputError.
 void write_animation(const std::string& path, const Animation& animation);
+
+/// How wide such a ribbon is where nobody says it, of a chain of this length [m].
+inline double ribbon_width(double length) { return length / 10; }
 
 /// A chain's shape [2 × N] as a ribbon of `width` [m] along z: vertices [3 × 2N], first those at
 /// one border.

@@ -37,6 +37,9 @@ inline constexpr Index most_file_vertices = 6'000'000, most_file_faces = 2'000'0
 /// place, value and rule.
 Mesh read_mesh(const std::string& path);
 
+/// The same of the bytes of a file called `path`, of which no other file is read.
+Mesh parse_mesh(const std::string& bytes, const std::string& path);
+
 /// The file of such a path, without the morph target; whether files like it can have one.
 std::string mesh_file(const std::string& path);
 bool may_have_morph_targets(const std::string& path);
@@ -55,6 +58,9 @@ Mesh parse_ply(const std::string& text, const std::string& source);
 /// and those above say; the base shape, or with `target` that morph target on top of it (empty: the
 /// only one). Weights, skins and animations are not applied; a mesh with a skin is refused.
 Mesh read_gltf(const std::string& path, const std::optional<std::string>& target);
+/// The same of the bytes of the file called `path`; those of its buffers are to be in it.
+Mesh parse_gltf(const std::string& bytes, const std::string& path,
+                const std::optional<std::string>& target);
 
 /// Joins the copies that exporters write of vertices on seams of texture or normals, the same in
 /// both poses, and remarks on it. Copies are at one place in both, and ends of an edge where just
