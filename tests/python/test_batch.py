@@ -1,5 +1,6 @@
 """Many shots on threads, and on a Dask cluster of two workers of which one is killed on the way."""
 
+import json
 import os
 import pathlib
 import signal
@@ -23,8 +24,6 @@ def family(count):
 
 def bits(shots):
     """All numbers of the results, but for what a clock says."""
-    import json
-
     return [timeless(json.loads(shot.result.to_json())) for shot in shots]
 
 

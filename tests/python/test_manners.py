@@ -47,7 +47,6 @@ class Arrays(unittest.TestCase):
 
 
 class Memory(unittest.TestCase):
-    @unittest.skipIf(os.environ.get("NUNO_SANITIZED"), "a sanitizer keeps freed memory")
     def test_is_level_over_a_thousand_throws(self):
         scene = nuno.read_scene(SCENES / "s-curve-32.json")
 
