@@ -123,6 +123,8 @@ TEST(SheetModes, OfASquareAreWavesAlongItsSides) {
 TEST(SheetModes, OfTheSmallestMeshesAreAllThereAre) {
   for (Index groups = 2; groups <= most_groups; ++groups) {
     const Index particles = fewest_sheet_particles(groups);
+    // One mode beyond the last that a group may have, and N − 1 in all.
+    EXPECT_LT(last_modes_of_sheet_group[static_cast<std::size_t>(groups - 2)].last + 1, particles);
     const Index columns = particles / 2 + particles % 2;
     SheetScene scene;  // a strip, one vertex more where the number is odd
     const Mesh strip = grid(columns, 2, 0.1, Tiles::triangles);
