@@ -85,8 +85,20 @@ TEST_F(Studio, RefusesWithTheMessagesOfTheCommandLine) {
             "an option of the address has more than one value");
   EXPECT_EQ(refused("/api/simulate?alpha=nan", small_scene, 400),
             "alpha: \"nan\" is not a finite number");
+  EXPECT_EQ(refused("/api/optimize?backend=havok", small_scene, 400),
+            "backend: \"havok\" is not one of native, box2d, bullet");
   EXPECT_EQ(refused("/api/optimize?backend=bullet", small_scene, 400),
-            "backend: \"bullet\" is not one of native, box2d");
+            "scene.json: bullet does not fly a chain; those that do: native, box2d");
+  EXPECT_EQ(refused("/api/meshes", R"({"initial":{"name":"a.obj","data":"?"}})", 400),
+            "meshes: /initial/data: is not base64");
+  EXPECT_EQ(refused("/api/meshes", R"({"initial":{"name":"a.stl","data":"AA=="}})", 400),
+            "a.stl: is one mesh; give its second pose as well, or glTF with a morph target");
+  EXPECT_EQ(refused("/api/scene",
+                    R"({"nuno_scene":1,"arrival_time":1,"initial":"/etc/hosts",)"
+                    R"("target":"/etc/hosts"})",
+                    400),
+            "scene.json: /initial: a mesh file is not read here; give the points of a chain, or "
+            "vertices and faces");
   EXPECT_NE(refused("/api/optimize?frames=1e9", small_scene, 400), "");
   EXPECT_NE(refused("/api/optimize?after=1e9&frames=3", small_scene, 400), "");
   EXPECT_NE(refused("/api/optimize?sudo=1", small_scene, 400), "");

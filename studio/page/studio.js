@@ -205,8 +205,13 @@ function choose(group, names, chosen) {
 
 const fit = () => (is_sheet() ? space.fit() : fit_view(view));
 
+// What cloth it is, whatever its shapes: a sheet's faces.
+const mesh_of_scene = () => JSON.stringify(scene().initial.faces ?? null);
+let shown_mesh = '';
+
 // A sheet's stage and tools in place of a chain's.
 async function show_form() {
+  shown_mesh = mesh_of_scene();
   const form = is_sheet() ? 'sheet' : 'chain';
   document.querySelector('main').dataset.form = form;
   $('stage').hidden = form === 'sheet';
@@ -260,6 +265,14 @@ function reshape(line) {
 function step_history(done) {
   if (!done) return;
   app.vertex = null;
+  if (shown_mesh !== mesh_of_scene()) {
+    // Another cloth: what is shown is not of it.
+    throws.drop();
+    Object.assign(app, { alpha: null, results: {}, time: null });
+    fit_due = true;
+    show_form();
+    set_tool('move');
+  }
   throws.latency.forget();
   show_scene();
   throws.request(false);
