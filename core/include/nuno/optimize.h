@@ -81,7 +81,7 @@ struct GlobalSearchOptions {
 /// A scan, then a refinement of the deepest valleys: where the objective knows its derivatives, on
 /// cubics through the arrivals of all particles, a round for all valleys in one batch; otherwise by
 /// Brent's method in one valley after another. Never worse than any gain that it has tried; a
-/// valley narrower than the scan, as fragile flights have, may be missed.
+/// valley narrower than the scan, as fragile flights have, may stay unseen.
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options = {});
 
 }  // namespace nuno
