@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nuno/engines.h>
 #include <nuno/gains.h>
 
 #include <array>
@@ -27,12 +28,12 @@ struct AnimationOptions {
       ribbon_width;  ///< of a chain's mesh [m], > 0; absent: a tenth of its length
 };
 
-/// One rollout.
+/// One rollout; of a result its own, but for what is asked otherwise.
 struct SimulateOptions {
-  std::string scene;                ///< a file
-  std::string backend = "native";   ///< one of backend_names
-  Gains gains = 0;                  ///< α ≥ 0 [N/m]; 0 is launch only
-  std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
+  std::string scene;           ///< a file, of a scene or a result
+  std::string backend;         ///< one of backend_names; empty: the result's, or native
+  std::optional<Gains> gains;  ///< α ≥ 0 [N/m], 0 is launch only; absent: the result's, or 0
+  SceneChanges changes;
   /// Animation (one of animation_extensions), else result file; "-" for standard output, empty for
   /// none.
   std::string out;
@@ -48,10 +49,10 @@ struct OptimizeOptions {
   std::optional<double> error_limit;
   /// Least error within this control effort; takes the optimiser's place.
   std::optional<double> effort_limit;
-  Index coefficients = 1;           ///< gains by group of modes, 1 … most_groups
-  bool refine = false;              ///< corrects the reference until the cloth is on the target
-  bool robust = false;              ///< the error averaged over small perturbations of the start
-  std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
+  Index coefficients = 1;  ///< gains by group of modes, 1 … most_groups
+  bool refine = false;     ///< corrects the reference until the cloth is on the target
+  bool robust = false;     ///< the error averaged over small perturbations of the start
+  SceneChanges changes;
   /// Animation (one of animation_extensions), else result file; "-" for standard output, empty for
   /// none.
   std::string out;
@@ -69,6 +70,7 @@ struct ThrowOptions {
   std::string backend = "native";     ///< one of backend_names
   double frames_per_second = 24;      ///< of the animation [1/s], > 0
   bool settle = false;                ///< the cloth comes to rest on the target
+  bool reverses_target = false;       ///< of drawings: the line from its other end
   std::optional<double> error_limit;  ///< as of the search
   std::string out;                    ///< as of the others
   AnimationOptions animation;

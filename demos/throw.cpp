@@ -66,13 +66,15 @@ ExitStatus throw_cloth(const ThrowOptions& options) {
   const std::string source = options.target.empty()
                                  ? options.start
                                  : fmt::format("{} to {}", options.start, options.target);
-  SceneFile file =
-      make_scene_file(source, is_drawing(options.start) ? scene_of_drawings(options, source)
-                                                        : scene_of_meshes(options, source));
+  AnyScene scene = is_drawing(options.start) ? scene_of_drawings(options, source)
+                                             : scene_of_meshes(options, source);
+  if (options.reverses_target) scene = with_reversed_target(std::move(scene), source);
+  SceneFile file = make_scene_file(source, std::move(scene));
   OptimizeOptions search;
   search.backend = options.backend;
   search.out = out;
   search.error_limit = options.error_limit;
+  search.changes.reverses_target = options.reverses_target;
   search.animation = options.animation;
   return optimize(std::move(file), search);
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "encoding.h"
 #include "text_file.h"
 
 namespace nuno {
@@ -42,6 +43,7 @@ Mesh read_mesh(const std::string& path) {
     throw InputError(fmt::format("{}: does not end in .obj, .ply, .gltf or .glb", path));
   }
   const std::string text = read_file(path, path, "a mesh", largest_file);
+  if (is_obj) require_text(text, path);
   return is_obj ? parse_obj(text, path) : parse_ply(text, path);
 }
 

@@ -17,6 +17,8 @@
 
 #include "compact_json.h"
 #include "json_field.h"
+#include "mesh_json.h"
+#include "scene_json.h"
 
 namespace nuno {
 namespace {
@@ -46,10 +48,9 @@ void require_known_fields(const Json& object, const Field& at,
     if (std::ranges::find(known, item.key()) != known.end()) continue;
     const auto nearest = *std::ranges::min_element(
         known, {}, [&](std::string_view candidate) { return edit_distance(name, candidate); });
-    // The name is the user's text: quoted and escaped as JSON, it stays on one line.
-    std::string quoted = shown(Json(item.key()));
-    at.child(quoted.substr(1, quoted.size() - 2))
-        .refuse(fmt::format("{} is not a known field; the nearest is \"{}\"", quoted, nearest));
+    at.child(shown_name(item.key()))
+        .refuse(fmt::format("{} is not a known field; the nearest is \"{}\"",
+                            shown(Json(item.key())), nearest));
   }
 }
 
@@ -112,7 +113,8 @@ constexpr std::array arrival_words = {Word<Arrival>{"pass", Arrival::pass},
                                       Word<Arrival>{"settle", Arrival::settle}};
 constexpr std::array target_length_words = {Word<TargetLength>{"fit", TargetLength::fit},
                                             Word<TargetLength>{"as-drawn", TargetLength::as_drawn}};
-
+constexpr std::array target_order_words = {Word<TargetOrder>{"as-drawn", TargetOrder::as_drawn},
+                                           Word<TargetOrder>{"reversed", TargetOrder::reversed}};
 constexpr std::array rest_words = {Word<Rest>{"initial", Rest::initial},
                                    Word<Rest>{"flat", Rest::flat}};
 
@@ -136,13 +138,12 @@ std::string_view word_for(const Words& words, Enum value) {
 }
 
 /// A scene's fields take numbers and words, but for its shapes.
-const JsonForm scene_form = {.points = {{"/initial", 0}, {"/target", 0}}, .longest_list = 64};
-
-Json to_json(const Points& points) {
-  Json array = Json::array();
-  for (Index i = 0; i < points.cols(); ++i) array.push_back({points(0, i), points(1, i)});
-  return array;
-}
+const JsonForm scene_form = {
+    .points = {{"/initial", 0}, {"/target", 0}, {"/texture_coordinates", 0}},
+    .lists = {{"/faces", most_file_faces},
+              {"/texture_corners", most_file_faces},
+              {"/file_vertices", most_file_vertices}},
+    .longest_list = 64};
 
 // Every field of a scene file stands here once, with the words that it may have; what lists, reads
 // and writes scenes visits them.
@@ -163,6 +164,9 @@ void visit_last(SceneOf& scene, Visit&& visit) {
   visit("arrival", scene.arrival, arrival_words);
   visit("damping_ratio", scene.damping_ratio);
   visit("target_length", scene.target_length, target_length_words);
+  if constexpr (requires { scene.target_order; }) {
+    visit("target_order", scene.target_order, target_order_words);
+  }
   visit("time_step", scene.time_step);
   visit("frames_per_second", scene.frames_per_second);
 }
@@ -220,7 +224,10 @@ struct FieldWriter {
 template <typename SceneOf>
 void require_fields(const Json& json, const Field& root) {
   std::vector<std::string_view> known = {"nuno_scene", "initial", "target", "cloth"};
-  if constexpr (std::is_same_v<SceneOf, SheetScene>) known.emplace_back("material");
+  if constexpr (std::is_same_v<SceneOf, SheetScene>) {
+    known.emplace_back("material");
+    if (json.contains("faces")) known.insert(known.end(), mesh_fields.begin(), mesh_fields.end());
+  }
   SceneOf scene;
   visit_first(scene, FieldLister{known});
   visit_last(scene, FieldLister{known});
@@ -243,7 +250,8 @@ void read_material(const Json& json, const Field& root, auto& cloth) {
 }
 
 bool is_sheet(const Json& json) {
-  return json.is_object() && json.contains("initial") && json["initial"].is_string();
+  return json.is_object() &&
+         (json.contains("faces") || (json.contains("initial") && json["initial"].is_string()));
 }
 
 ChainScene read_chain(const Json& json, const std::string& source) {
@@ -277,29 +285,59 @@ SheetInput read_sheet(const Json& json, const std::string& source,
                       const std::filesystem::path& folder) {
   const Field root{source, ""};
   require_fields<SheetScene>(json, root);
-  std::string initial, target;
-  read(json, root, "initial", initial);
-  read(json, root, "target", target);
   SheetScene scene;
   scene.name = std::filesystem::path(source).stem().string();
   visit_first(scene, FieldReader{json, root});
   read_named_material(json, root, scene.cloth);
   read_material(json, root, scene.cloth);
   visit_last(scene, FieldReader{json, root});
+  if (json.contains("faces")) {
+    Mesh mesh = read_mesh(json, root);
+    scene.initial = mesh.vertices;
+    scene.target = read_vertices(json, root, "target");
+    scene.faces = mesh.faces;
+    validate(scene, source);
+    return {std::move(scene), std::move(mesh)};
+  }
+  std::string initial, target;
+  read(json, root, "initial", initial);
+  read(json, root, "target", target);
   return with_meshes(std::move(scene), (folder / initial).string(), (folder / target).string(),
                      source);
 }
 
+/// What chains and sheets have in common, around their shapes.
+template <typename SceneOf>
+Json json_of_scene(const SceneOf& scene) {
+  Json json = {{"nuno_scene", 1}};
+  const FieldWriter write{json};
+  visit_first(scene, write);
+  json["initial"] = json_of(scene.initial);
+  json["target"] = json_of(scene.target);
+  visit_material(scene.cloth, FieldWriter{json["cloth"]});
+  visit_last(scene, write);
+  return json;
+}
+
 }  // namespace
 
-AnyScene read_scene(const std::string& path) { return parse_any_scene(read_input(path), path); }
+const Scene& scene_of(const AnyScene& scene) {
+  if (const auto* chain = std::get_if<ChainScene>(&scene)) return *chain;
+  return std::get<SheetInput>(scene).scene;
+}
+
+AnyScene scene_from(const Json& json, const std::string& source, const std::string& folder) {
+  if (is_sheet(json)) return read_sheet(json, source, folder);
+  return read_chain(json, source);
+}
 
 AnyScene parse_any_scene(const std::string& text, const std::string& path) {
   const std::string source = name_of_input(path);
-  const Json json = parse_compact(text, source, scene_form);
-  if (is_sheet(json)) return read_sheet(json, source, std::filesystem::path(path).parent_path());
-  return read_chain(json, source);
+  return scene_from(parse_compact(text, source, scene_form), source,
+                    std::filesystem::path(path).parent_path().string());
 }
+
+AnyScene read_scene(const std::string& path) { return parse_any_scene(read_input(path), path); }
 
 ChainScene parse_scene(const std::string& text, const std::string& source) {
   const Json json = parse_compact(text, source, scene_form);
@@ -310,16 +348,15 @@ ChainScene parse_scene(const std::string& text, const std::string& source) {
   return read_chain(json, source);
 }
 
-std::string to_json(const ChainScene& scene) {
-  Json json = {{"nuno_scene", 1}};
-  const FieldWriter write{json};
-  visit_first(scene, write);
-  json["initial"] = to_json(scene.initial);
-  json["target"] = to_json(scene.target);
-  visit_material(scene.cloth, FieldWriter{json["cloth"]});
-  visit_last(scene, write);
-  return json.dump(1);
+Json json_of(const AnyScene& scene) {
+  if (const auto* chain = std::get_if<ChainScene>(&scene)) return json_of_scene(*chain);
+  const auto& sheet = std::get<SheetInput>(scene);
+  Json json = json_of_scene(sheet.scene);
+  write_mesh(json, sheet.mesh);
+  return json;
 }
+
+std::string to_json(const ChainScene& scene) { return json_of_scene(scene).dump(1); }
 
 SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
                        const std::string& source) {

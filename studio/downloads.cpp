@@ -68,7 +68,7 @@ Answer result_answer(const Request& request) {
   if (done.found) optimization = Optimization{request.options.optimizer, *done.found};
   if (done.refined) optimization->refinement = done.refined;
   return {.body = printed([&](std::FILE* file) {
-            write_result(file, done.file.scene.name, *done.backend, done.flight,
+            write_result(file, done.file.input, *done.backend, done.flight,
                          bounded_sensitivity(*done.backend, done.flight), optimization);
           }),
           .file_name = "result.json"};

@@ -233,7 +233,10 @@ bool enter(Door door, const std::string& input, std::chrono::milliseconds patien
         return enter_page(input, patience);
     }
   } catch (const InputError& error) {
-    require_text(printable(error.what()));  // as people see it: a name may hold any byte
+    // As people see it: a name may hold any byte. Cut where it stands, not just before it is told.
+    const std::string said = message_for_people(error.what());
+    require_text(said);
+    require(said == printable(error.what()), "a long message", error.what());
   }
   return false;
 }

@@ -23,6 +23,8 @@ struct Objective {
   /// Where E(α) ends to make sense [N/m]: gains above are not resolved by the engine's time step
   /// or, without damping (ζ < ½), pull the cloth through itself so often that E is noise.
   double largest_gain = std::numeric_limits<double>::infinity();
+  /// Why it ends there and what takes it farther, for people.
+  std::string why_largest = "the search ends there";
   /// An error that is as good as none [m], ≥ 0: below, the smallest gain is the best.
   double negligible = 0;
 };
@@ -48,6 +50,7 @@ struct OptimizeSummary {
   Index evaluations = 0;            ///< rollouts, those for derivatives too
   double seconds = 0;               ///< wall clock
   std::vector<Evaluation> history;  ///< descent: the path; global: every gain, ascending
+  bool at_largest_gain = false;     ///< the best may lie beyond what the objective allows
   std::string reason;               ///< why it stopped, for people
 };
 

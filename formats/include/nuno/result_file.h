@@ -6,6 +6,7 @@
 #include <nuno/pareto_front.h>
 #include <nuno/refine.h>
 #include <nuno/rollout.h>
+#include <nuno/scene_file.h>
 
 #include <cstdio>
 #include <optional>
@@ -26,8 +27,9 @@ struct Optimization {
   std::optional<RefineSummary> refinement = {};  ///< where the flight is refined
 };
 
-/// The result JSON of one rollout, which has not diverged.
-void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+/// The result JSON of one rollout, which has not diverged, of the scene `input`: it holds all that
+/// read_scene_or_result needs, for it to be flown again.
+void write_result(std::FILE* file, const AnyScene& input, const Backend& backend,
                   const Rollout& rollout, double sensitivity,
                   const std::optional<Optimization>& optimization);
 
