@@ -3,6 +3,8 @@
 #include <nuno/conditioning.h>
 #include <nuno/parallel.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,6 +26,30 @@ std::vector<double> gains_of_curve(const Backend& first, const Backend& second) 
     gains.push_back(low * std::pow(high / low, i / (points_of_curve - 1.0)));
   }
   return gains;
+}
+
+/// The curves over the gain, of both engines.
+void fly_curves(const std::array<const Backend*, 2>& engines, const ComparisonOptions& options,
+                Comparison& result) {
+  result.curve_gains = gains_of_curve(*engines[0], *engines[1]);
+  const std::size_t points = result.curve_gains.size();
+  const std::vector<double> unknown(points, std::numeric_limits<double>::infinity());
+  result.curve_sensitivity = result.curve_strain = unknown;
+  for (std::size_t engine = 0; engine < 2; ++engine) {
+    result.curve_errors[engine] = result.curve_efforts[engine] = unknown;
+    parallel_for(static_cast<Index>(points), [&](Index k) {
+      const auto i = static_cast<std::size_t>(k);
+      options.before_rollout();
+      const Rollout flight = rollout(*engines[engine], result.curve_gains[i]);
+      if (diverged(flight)) return;
+      result.curve_errors[engine][i] = flight.error.mean;
+      result.curve_efforts[engine][i] = flight.control_effort;
+      if (engine > 0) return;
+      options.before_rollout();
+      result.curve_sensitivity[i] = bounded_sensitivity(*engines[0], flight);
+      result.curve_strain[i] = flight.max_strain;
+    });
+  }
 }
 
 }  // namespace
@@ -74,25 +100,7 @@ Comparison compare_engines(const std::string& scene, const Backend& first, const
   result.shape_difference.mean /= result.cloth_length;
   result.shape_difference.max /= result.cloth_length;
 
-  result.curve_gains = gains_of_curve(first, second);
-  const std::size_t points = result.curve_gains.size();
-  const std::vector<double> unknown(points, std::numeric_limits<double>::infinity());
-  result.curve_sensitivity = result.curve_strain = unknown;
-  for (std::size_t engine = 0; engine < 2; ++engine) {
-    result.curve_errors[engine] = result.curve_efforts[engine] = unknown;
-    parallel_for(static_cast<Index>(points), [&](Index k) {
-      const auto i = static_cast<std::size_t>(k);
-      options.before_rollout();
-      const Rollout flight = rollout(*engines[engine], result.curve_gains[i]);
-      if (diverged(flight)) return;
-      result.curve_errors[engine][i] = flight.error.mean;
-      result.curve_efforts[engine][i] = flight.control_effort;
-      if (engine > 0) return;
-      options.before_rollout();
-      result.curve_sensitivity[i] = bounded_sensitivity(first, flight);
-      result.curve_strain[i] = flight.max_strain;
-    });
-  }
+  fly_curves(engines, options, result);
   return result;
 }
 
@@ -106,6 +114,18 @@ bool is_calm(double sensitivity, double strain) {
 
 bool is_well_conditioned(const Comparison& comparison) {
   return is_calm(comparison.rows[0].sensitivity, comparison.rows[0].max_strain);
+}
+
+std::string centroid_warning(const Comparison& comparison) {
+  constexpr double largest = 1e-3;  // of L; engines in single precision are within 1e-4
+  std::string words;
+  for (const ComparisonRow& row : comparison.rows) {
+    const double off = row.error.centroid / comparison.cloth_length;
+    if (off <= largest) continue;
+    words += fmt::format("{}{}'s centroid is {:.2g} % of L from the target's",
+                         words.empty() ? "" : ", ", row.backend, 100 * off);
+  }
+  return words;
 }
 
 Spread spread(std::vector<double> values) {

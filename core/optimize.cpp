@@ -66,9 +66,12 @@ Objective objective(const Backend& backend) {
   // default step and at half of it part by 1e-2 of the cloth's length and more.
   constexpr double most_undamped = 100;
   result.largest_gain = backend.largest_gain();
+  result.why_largest = "the time step resolves no larger one; a shorter step does";
   result.negligible = 1e-10 * problem.cloth().size;
-  if (problem.damping_ratio < 0.5) {
-    result.largest_gain = std::min(result.largest_gain, most_undamped * result.gain_scale);
+  if (problem.damping_ratio < 0.5 && most_undamped * result.gain_scale < result.largest_gain) {
+    result.largest_gain = most_undamped * result.gain_scale;
+    result.why_largest =
+        "beyond, E of a control without damping is noise; \"damping_ratio\": 0.7 takes it farther";
   }
   return result;
 }
@@ -351,6 +354,14 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
   const Evaluation best = lowest(summary, objective.negligible);
   summary.gain = best.gain;
   summary.error = best.error;
+  // A search by values comes only near an end of its range.
+  summary.at_largest_gain =
+      best.error > objective.negligible &&
+      best.gain >
+          0.999 * std::min(objective.largest_gain, options.largest_gain * objective.gain_scale);
+  if (summary.at_largest_gain) {
+    summary.reason += fmt::format("; the best is the largest gain: {}", objective.why_largest);
+  }
   summary.seconds = seconds_since(start);
   return summary;
 }

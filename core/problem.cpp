@@ -42,7 +42,9 @@ Problem make_problem(const ChainScene& scene, std::string source) {
         source + ": /initial: the line resampled to /particles points has a segment of no length");
   }
 
-  problem.target = resample(scene.target, scene.particles);
+  const bool is_reversed = scene.target_order == TargetOrder::reversed;
+  problem.target =
+      resample(is_reversed ? scene.target.rowwise().reverse() : scene.target, scene.particles);
   if (scene.target_length == TargetLength::fit) {
     const double drawn = segment_lengths(problem.target).sum();
     if (!(drawn > 1e-9 * chain.size)) {

@@ -84,19 +84,21 @@ Finish thrown(Shot& shot, const std::string& engine, const std::stop_token& stop
   SceneFile file = read_scene_file(shot.scene);
   file.problem.stop = stop;
   require_few_frames(file);
-  const std::shared_ptr<const Backend> backend = make_backend(engine, file);
+  std::shared_ptr<const Backend> backend = make_backend(engine, file);
   const std::string_view optimizer = optimizer_names.front();
   const Optimization found{std::string(optimizer), run_optimizer(optimizer, objective(*backend))};
-  const auto flight = std::make_shared<const Rollout>(
-      rollout(*backend, found.summary.gain, {.frames_per_second = file.scene.frames_per_second}));
+  ResolvedRollout flown = resolved_rollout(*backend, file, found.summary.gain,
+                                           {.frames_per_second = file.scene.frames_per_second});
+  if (flown.finer) backend = std::move(flown.finer);
+  const auto flight = std::make_shared<const Rollout>(std::move(flown.flight));
   if (diverged(*flight)) {
     return ends(shot, State::diverged, divergence_message(file.path, *backend, *flight));
   }
   const double growth = bounded_sensitivity(*backend, *flight);
-  return [&shot, backend, flight, found, growth, name = file.scene.name] {
+  return [&shot, backend, flight, found, growth, input = std::move(file.input)] {
     try {
       write_output(shot.result, [&](std::FILE* result) {
-        write_result(result, name, *backend, *flight, growth, found);
+        write_result(result, input, *backend, *flight, growth, found);
       });
       shot.state = State::thrown;
     } catch (const OutputError& error) {

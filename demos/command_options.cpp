@@ -14,7 +14,7 @@
 namespace nuno {
 namespace {
 
-constexpr const char* scene_file = "Scene file (JSON)";
+constexpr const char* scene_file = "Scene file (JSON), or a result: the scene that it holds";
 
 // Below the options of every command that throws scenes.
 constexpr const char* which_reference = R"(What the control pulls towards is the scene's choice:
@@ -136,14 +136,22 @@ void add_coefficients(CLI::App& command, Index& coefficients) {
       ->default_str(fmt::format("{}", coefficients));
 }
 
+void add_reverse_target(CLI::App& command, bool& reverses) {
+  command.add_flag("--reverse-target", reverses,
+                   "The cloth's first particle to the end of a drawn target, not to its\n"
+                   "beginning");
+}
+
 }  // namespace
 
 // The parser and the action share a command's options.
 
 Action add_simulate(CLI::App& command) {
   const auto options = std::make_shared<SimulateOptions>();
-  add_file(command, "SCENE", options->scene, scene_file);
+  add_file(command, "SCENE", options->scene,
+           "Scene file (JSON), or a result: flown again as it was, to the last bit");
   add_any_backend(command, options->backend);
+  command.get_option("--backend")->default_str("native, or the result's");
   command
       .add_option_function<std::string>(
           "--alpha",
@@ -151,8 +159,9 @@ Action add_simulate(CLI::App& command) {
           "Gain of the shape control [N/m], >= 0; 0 is launch only.\n"
           "A,B or A,B,C …: gains by group of modes, see optimize --coefficients")
       ->type_name("A")
-      ->default_str(fmt::format("{}", options->gains.rest));
-  add_time_step(command, options->time_step);
+      ->default_str("0, or the result's");
+  add_time_step(command, options->changes.time_step);
+  add_reverse_target(command, options->changes.reverses_target);
   add_flight_out(command, options->out, options->animation);
   command.footer(which_reference);
   return [options] { return simulate(*options); };
@@ -168,7 +177,8 @@ Action add_optimize(CLI::App& command) {
   command.add_flag("--robust", options->search.robust,
                    "Prefer a gain whose answer is not fragile: the error is the mean\n"
                    "over five starts, four of them perturbed by 0.1 % of the length");
-  add_time_step(command, options->time_step);
+  add_time_step(command, options->changes.time_step);
+  add_reverse_target(command, options->changes.reverses_target);
   add_flight_out(command, options->out, options->animation);
   command.footer(which_reference);
   return [options] {
@@ -210,6 +220,7 @@ Action add_throw(CLI::App& command) {
   add_error_limit(command, options->error_limit);
   add_refine(command, options->refine);
   command.add_flag("--settle", options->request.settle, "The cloth comes to rest on the target");
+  add_reverse_target(command, options->reverses_target);
   command.footer(
       "The cloth follows a motion from the first shape to the second, \"reference\": \"morph\"\n"
       "with \"damping_ratio\": 0.7 in a scene, at the gain of least error at arrival.");

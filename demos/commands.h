@@ -21,12 +21,12 @@ enum class ExitStatus {
   diverged = 3     ///< the simulation diverged
 };
 
-/// One rollout.
+/// One rollout; of a result its own, but for what is asked otherwise.
 struct SimulateOptions {
-  std::string scene;                ///< a file
-  std::string backend = "native";   ///< one of backend_names
-  Gains gains = 0;                  ///< α ≥ 0 [N/m]; 0 is launch only
-  std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
+  std::string scene;           ///< a file, of a scene or a result
+  std::string backend;         ///< one of backend_names; empty: the result's, or native
+  std::optional<Gains> gains;  ///< α ≥ 0 [N/m], 0 is launch only; absent: the result's, or 0
+  SceneChanges changes;
   /// Animation (one of animation_extensions), else result file; "-" for standard output, empty for
   /// none.
   std::string out;
@@ -38,7 +38,7 @@ struct OptimizeOptions {
   std::string scene;               ///< a file
   std::string backend = "native";  ///< one of backend_names
   SearchOptions search;
-  std::optional<double> time_step;  ///< [s], > 0; absent: the scene's
+  SceneChanges changes;
   /// Animation (one of animation_extensions), else result file; "-" for standard output, empty for
   /// none.
   std::string out;
@@ -51,6 +51,7 @@ struct ThrowOptions {
   std::string start, target;  ///< files, see throw_scene; `target` may be empty
   ThrowRequest request;
   std::string backend = "native";     ///< one of backend_names
+  bool reverses_target = false;       ///< of drawings: the line from its other end
   bool refine = false;                ///< as of the search
   std::optional<double> error_limit;  ///< as of the search
   std::string out;                    ///< as of the others

@@ -43,6 +43,8 @@ void print_rows(std::FILE* table, std::size_t width, const Comparison& compariso
     scene.clear();  // both stand for the two rows
     apart.clear();
   }
+  const std::string off = centroid_warning(comparison);
+  if (!off.empty()) fmt::print(table, "  {}\n", off);
   const auto most = std::ranges::max(comparison.rows, {}, &ComparisonRow::sensitivity);
   const std::string warning = fragility(most.sensitivity);
   if (!warning.empty()) fmt::print(table, "  {}\n", warning);

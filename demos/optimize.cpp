@@ -2,6 +2,7 @@
 
 #include <nuno/feasibility.h>
 #include <nuno/robust.h>
+#include <nuno/target_order.h>
 
 #include <cmath>
 
@@ -13,6 +14,19 @@
 
 namespace nuno {
 namespace {
+
+/// Tells people of a target that is drawn the other way round.
+void print_target_order(std::FILE* summary, const SceneFile& file, bool is_reversed_here) {
+  const auto* const chain = std::get_if<ChainScene>(&file.input);
+  if (!chain) return;
+  const auto orders = compare_target_orders(*chain, backend_maker("native", file));
+  const std::string words = orders ? advice(*orders) : "";
+  if (words.empty()) return;
+  const bool is_reversed = chain->target_order == TargetOrder::reversed;
+  fmt::print(summary, "{}\n{} does so, and in a scene \"target_order\": \"{}\".\n", words,
+             is_reversed_here ? "Leaving out --reverse-target" : "--reverse-target",
+             is_reversed ? "as-drawn" : "reversed");
+}
 
 /// Tells people how the answer was found.
 void print_search(std::FILE* summary, const Optimization& found, double length) {
@@ -49,7 +63,7 @@ void print_search(std::FILE* summary, const Optimization& found, double length) 
 }  // namespace
 
 ExitStatus optimize(const OptimizeOptions& options) {
-  return optimize(read_scene_file(options.scene, options.time_step), options);
+  return optimize(read_scene_file(options.scene, options.changes), options);
 }
 
 ExitStatus optimize(const SceneFile& file, const OptimizeOptions& options) {
@@ -66,6 +80,8 @@ ExitStatus optimize(const SceneFile& file, const OptimizeOptions& options) {
     fmt::print(summary, "The target is a shape that cloth can take: its edges fit to {:.2g} %.\n",
                100 * asked.length_mismatch);
   }
+
+  print_target_order(summary, file, options.changes.reverses_target);
 
   SearchAnswer answer = search(file, std::move(backend), options.search, Telling::progress);
   if (answer.left_refinement_out) {

@@ -2,12 +2,28 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include <nuno/conditioning.h>
 #include <nuno/output.h>
 #include <nuno/progress.h>
 #include "pictures/summary.h"
 
 namespace nuno {
+
+namespace {
+
+/// Tells people of a step that is not the one that they asked for.
+void print_shorter_step(std::FILE* people, const SceneFile& file, const Backend& backend) {
+  const std::optional<double>& asked = file.scene.time_step;
+  if (!asked) return;
+  const double enough = std::ceil(file.scene.arrival_time / *asked * (1 - 1e-12));
+  if (static_cast<double>(backend.steps()) <= enough) return;
+  fmt::print(people, "  {:<17} {}, not {}: {} needs shorter ones for this cloth and gain\n",
+             "time step", duration(backend.time_step()), duration(*asked), backend.name());
+}
+
+}  // namespace
 
 ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
                const std::string& out, const AnimationOptions& animation,
@@ -19,15 +35,12 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
   const double frames = keeps_frames ? file.scene.frames_per_second : 0;
   ResolvedRollout flown =
       resolved_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
-  Rollout& flight = flown.flight;
+  const Rollout& flight = flown.flight;
   if (diverged(flight)) {
     report_divergence(file.path, asked, flight);
     return ExitStatus::diverged;
   }
   const Backend& backend = flown.finer ? *flown.finer : asked;
-  if (const auto half = at_finer_step(backend, file, 0.5)) {
-    flight.step_error = step_error(*half, flight);
-  }
   const double growth = bounded_sensitivity(backend, flight);
   if (!out.empty()) write_flight(out, file, backend, flight, growth, animation, optimization);
   print_summary(people(out), file.scene.name, backend, flight, growth);
@@ -35,8 +48,9 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
     fmt::print(people(out), "  {:<17} it diverges in {} steps of {}\n", "shorter steps",
                asked.steps(), duration(asked.time_step()));
   }
-  if (file.mesh) {
-    for (const std::string& remark : file.mesh->remarks) {
+  print_shorter_step(people(out), file, backend);
+  if (const Mesh* const mesh = file.mesh()) {
+    for (const std::string& remark : mesh->remarks) {
       fmt::print(people(out), "  {:<17} {}\n", "mesh", printable(remark));
     }
   }

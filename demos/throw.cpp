@@ -14,14 +14,16 @@ ExitStatus throw_cloth(const ThrowOptions& options) {
     throw InputError(fmt::format("--out: \"{}\" does not end in .json or {}", out,
                                  fmt::join(animation_extensions, ", ")));
   }
-  const SceneFile file =
-      make_scene_file(throw_source(options.start, options.target),
-                      throw_scene(options.request, options.start, options.target));
+  const std::string source = throw_source(options.start, options.target);
+  AnyScene scene = throw_scene(options.request, options.start, options.target);
+  if (options.reverses_target) scene = with_reversed_target(std::move(scene), source);
+  const SceneFile file = make_scene_file(source, std::move(scene));
   OptimizeOptions search;
   search.backend = options.backend;
   search.out = out;
   search.search.error_limit = options.error_limit;
   search.search.refine = options.refine;
+  search.changes.reverses_target = options.reverses_target;
   search.animation = options.animation;
   return optimize(file, search);
 }

@@ -7,6 +7,7 @@
 #include <nuno/conditioning.h>
 #include <nuno/input.h>
 #include <nuno/native.h>
+#include <nuno/target_order.h>
 
 #include <algorithm>
 #include <cassert>
@@ -68,18 +69,22 @@ std::unique_ptr<Backend> make_backend(std::string_view name, const SceneFile& fi
 }  // namespace
 
 SceneFile make_scene_file(const std::string& path, AnyScene scene) {
-  if (auto* chain = std::get_if<ChainScene>(&scene)) {
-    return {path, *chain, make_problem(*chain, path)};
-  }
-  auto& sheet = std::get<SheetInput>(scene);
-  return {path, sheet.scene, make_problem(sheet.scene, path), std::move(sheet.mesh)};
+  const auto* const chain = std::get_if<ChainScene>(&scene);
+  Problem problem =
+      chain ? make_problem(*chain, path) : make_problem(std::get<SheetInput>(scene).scene, path);
+  return {path, scene_of(scene), std::move(problem), std::move(scene)};
 }
 
-SceneFile read_scene_file(const std::string& path, std::optional<double> time_step) {
-  AnyScene scene = read_scene(path);
-  if (time_step) {
+SceneFile read_scene_file(const std::string& path, const SceneChanges& changes) {
+  auto [scene, flight] = read_scene_or_result(path);
+  const std::string source = name_of_input(path);
+  if (flight && std::ranges::find(backend_names, flight->backend) == backend_names.end()) {
+    throw InputError(fmt::format("{}: /backend: \"{}\" is not one of {}", source,
+                                 flight->backend.substr(0, 60), fmt::join(backend_names, ", ")));
+  }
+  if (changes.time_step) {
     const auto replace = [&](auto& of) {
-      of.time_step = time_step;
+      of.time_step = changes.time_step;
       validate(of, "--time-step");
     };
     if (auto* chain = std::get_if<ChainScene>(&scene)) {
@@ -88,7 +93,18 @@ SceneFile read_scene_file(const std::string& path, std::optional<double> time_st
       replace(std::get<SheetInput>(scene).scene);
     }
   }
-  return make_scene_file(name_of_input(path), std::move(scene));
+  if (changes.reverses_target) scene = with_reversed_target(std::move(scene), source);
+  SceneFile file = make_scene_file(source, std::move(scene));
+  file.flight = std::move(flight);
+  return file;
+}
+
+AnyScene with_reversed_target(AnyScene scene, const std::string& source) {
+  auto* const chain = std::get_if<ChainScene>(&scene);
+  if (!chain) {
+    throw InputError(fmt::format("--reverse-target: is for a chain, and {} is a sheet", source));
+  }
+  return reversed(std::move(*chain));
 }
 
 double frames_per_second_of(double points, const SceneFile& file) {
@@ -178,11 +194,16 @@ ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, 
                                  const RolloutOptions& options) {
   ResolvedRollout result{nullptr, rollout(backend, gains, options)};
   for (const double share : {1.0 / 4, 1.0 / 16}) {
-    if (!diverged(result.flight) || file.scene.time_step) return result;
+    if (!diverged(result.flight) || file.scene.time_step) break;
     std::unique_ptr<Backend> finer = at_finer_step(backend, file, share);
-    if (!finer) return result;
+    if (!finer) break;
     Rollout flight = rollout(*finer, gains, options);
-    if (!diverged(flight)) return {std::move(finer), std::move(flight)};
+    if (!diverged(flight)) result = {std::move(finer), std::move(flight)};
+  }
+  if (diverged(result.flight)) return result;
+  const Backend& flew = result.finer ? *result.finer : backend;
+  if (const auto half = at_finer_step(flew, file, 0.5)) {
+    result.flight.step_error = step_error(*half, result.flight);
   }
   return result;
 }

@@ -14,6 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "encoding.h"
+#include "text_file.h"
+
 namespace nuno {
 namespace {
 
@@ -25,7 +28,8 @@ constexpr std::size_t most_rows = 3;  // coordinates of a point
 /// Takes a document's parts from nlohmann's parser as they come, and keeps those that are wanted.
 class Reader {
  public:
-  Reader(std::string source, const JsonForm& form) : source_(std::move(source)), form_(form) {}
+  Reader(std::string_view text, std::string source, const JsonForm& form)
+      : text_(text), source_(std::move(source)), form_(form) {}
 
   Json take() { return std::move(root_); }
 
@@ -34,7 +38,13 @@ class Reader {
   bool boolean(bool value) { return scalar(value); }
   bool number_integer(Json::number_integer_t value) { return scalar(value); }
   bool number_unsigned(Json::number_unsigned_t value) { return scalar(value); }
-  bool number_float(double value, const std::string&) { return scalar(value); }
+  bool number_float(double value, const std::string& text) {
+    if (value == 0 && !skips() && text.find_first_of("123456789") < text.find_first_of("eE")) {
+      throw InputError(fmt::format("{}: {}: {} is nearer to 0 than numbers can be", source_,
+                                   place(levels_.size()), shown_text(text)));
+    }
+    return scalar(value);
+  }
   bool string(std::string& value) { return scalar(std::move(value)); }
   bool binary(Json::binary_t&) { return true; }  // JSON has none
 
@@ -52,7 +62,7 @@ class Reader {
     top.is_dropped = !is_wanted || top.value.size() >= most_names;
     if (!top.is_dropped && top.value.contains(top.name)) {
       throw InputError(
-          fmt::format("{}: /: {} stands twice in one object", source_, shown(Json(top.name))));
+          fmt::format("{}: {}: stands twice in one object", source_, place(levels_.size())));
     }
     return true;
   }
@@ -63,15 +73,24 @@ class Reader {
     const int around = lists_around_points();
     if (!levels_.empty() && levels_.back().kind == Kind::point) put(Json::array());
     if (!levels_.empty() && levels_.back().kind == Kind::points) return begin(Kind::point);
+    const std::size_t longest = longest_list();
     begin(around == 0 ? Kind::points : Kind::list);
     levels_.back().around = around - 1;
+    levels_.back().longest = longest;
     return true;
   }
   bool end_array() { return end(); }
 
   bool parse_error(std::size_t, const std::string&, const Json::exception& error) {
+    const std::string fault = encoding_fault(text_);
+    if (!fault.empty()) throw InputError(fmt::format("{}: /: not JSON: {}", source_, fault));
     std::string what = error.what();  // "[json.exception.…] message", possibly over several lines
     if (const auto end = what.find("] "); end != std::string::npos) what = what.substr(end + 2);
+    // What it read last may be as long as the file.
+    if (const auto read = what.find("last read: '"); read != std::string::npos) {
+      const auto start = read + 12, end = what.rfind('\'');
+      if (end > start + 60) what.replace(start + 30, end - start - 60, "...");
+    }
     throw InputError(fmt::format("{}: /: not JSON: {}", source_, printable(what)));
   }
 
@@ -85,6 +104,7 @@ class Reader {
     std::string name = {};    ///< in an object, of the value that comes
     bool is_dropped = false;  ///< that value
     std::size_t index = 0;    ///< in a list, of the value that comes
+    std::size_t longest = 0;  ///< a list that is kept whole may be; 0 of any other
     int around = -1;          ///< lists around the points that are in this list, which excludes it
     std::size_t rows = 0;     ///< of all points
     std::array<double, most_rows> point = {};
@@ -99,16 +119,16 @@ class Reader {
     if (skipped_ > 0) return true;
     if (levels_.empty()) return false;
     const Level& top = levels_.back();
-    if (top.kind == Kind::object) return top.is_dropped;
-    return top.kind == Kind::list && top.around < 0 && top.index >= form_.longest_list &&
-           !is_long_list();
+    return top.kind == Kind::object ? top.is_dropped
+                                    : top.kind == Kind::list && top.around < 0 &&
+                                          top.longest == 0 && top.index >= form_.longest_list;
   }
 
-  /// Whether the list that is open is one of which all items are kept.
-  bool is_long_list() const {
-    if (form_.long_lists.empty()) return false;
-    const std::string text = pointer();
-    return form_.long_lists.contains(std::string_view(text).substr(0, text.rfind('/')));
+  /// Of the list that comes, if it is to be kept whole; else 0.
+  std::size_t longest_list() const {
+    if (form_.lists.empty() || levels_.empty() || levels_.back().kind != Kind::object) return 0;
+    const auto found = form_.lists.find(std::string_view(pointer()));
+    return found == form_.lists.end() ? 0 : found->second;
   }
 
   /// Of the list that comes: how many lists are around its points; negative where it has none.
@@ -169,6 +189,10 @@ class Reader {
     Level& top = levels_.back();
     if (top.kind == Kind::points) refuse(value, "is not a point [x, y]");
     if (top.kind == Kind::point) return add_coordinate(top, value);
+    if (top.longest > 0 && top.index >= top.longest) {
+      throw InputError(fmt::format("{}: {}: has more than {} items", source_,
+                                   place(levels_.size() - 1), top.longest));
+    }
     if (!skips()) {
       if (top.kind == Kind::object) {
         top.value[top.name] = std::move(value);
@@ -200,6 +224,7 @@ class Reader {
     return true;
   }
 
+  /// Of the value that comes.
   std::string pointer() const {
     std::string text;
     for (const Level& level : levels_) {
@@ -208,10 +233,24 @@ class Reader {
     return text;
   }
 
-  [[noreturn]] void refuse(const Json& value, const std::string& rule) const {
-    throw InputError(fmt::format("{}: {}: {} {}", source_, pointer(), shown(value), rule));
+  /// The same of the value that comes into the first `depth` levels, for messages: names are the
+  /// user's text.
+  std::string place(std::size_t depth) const {
+    std::string text;
+    for (std::size_t i = 0; i < depth; ++i) {
+      const Level& level = levels_[i];
+      text +=
+          '/' + (level.kind == Kind::object ? shown_name(level.name) : std::to_string(level.index));
+    }
+    return text.empty() ? "/" : text;
   }
 
+  [[noreturn]] void refuse(const Json& value, const std::string& rule) const {
+    throw InputError(
+        fmt::format("{}: {}: {} {}", source_, place(levels_.size()), shown(value), rule));
+  }
+
+  std::string_view text_;
   std::string source_;
   const JsonForm& form_;
   Json root_;
@@ -223,7 +262,7 @@ class Reader {
 }  // namespace
 
 Json parse_compact(std::string_view text, const std::string& source, const JsonForm& form) {
-  auto reader = std::make_unique<Reader>(source, form);
+  auto reader = std::make_unique<Reader>(text, source, form);
   try {
     Json::sax_parse(text, reader.get());
     return reader->take();
@@ -242,16 +281,25 @@ Points points_of(const Json& value) {
   return points;
 }
 
+Json json_of(const Points& points) {
+  Json array = Json::array();
+  for (Index i = 0; i < points.cols(); ++i) {
+    array.push_back(std::vector<double>(points.col(i).begin(), points.col(i).end()));
+  }
+  return array;
+}
+
+std::string shown_name(const std::string& name) {
+  const std::string quoted = shown(Json(name));
+  return quoted.substr(1, quoted.size() - 2);
+}
+
 std::string shown(const Json& value) {
   constexpr std::size_t longest = 60;
   if (value.is_binary()) {
     const Points points = points_of(value).leftCols(
         std::min<Index>(4, static_cast<Index>(value.get_binary().size() / 16)));
-    Json list = Json::array();
-    for (Index i = 0; i < points.cols(); ++i) {
-      list.push_back(std::vector<double>(points.col(i).begin(), points.col(i).end()));
-    }
-    return shown(list);
+    return shown(json_of(points));
   }
   std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
   if (text.size() > longest) text = text.substr(0, longest - 3) + "...";

@@ -18,10 +18,10 @@ struct JsonForm {
   std::map<std::string_view, int> points = {};
   /// Names of the outermost object that are kept; empty: all.
   std::set<std::string_view> wanted = {};
-  /// Items that are kept of a list that is none of points; of the others nobody asks.
+  /// Lists in objects that are kept whole, and the most items of each.
+  std::map<std::string_view, std::size_t> lists = {};
+  /// Items that are kept of every other list that is none of points; of the rest nobody asks.
   std::size_t longest_list = std::numeric_limits<std::size_t>::max();
-  /// Where lists stand of which all items are kept all the same ("/initial/faces").
-  std::set<std::string_view> long_lists = {};
   /// Values in one another; far deeper ones could not even be shown without running out of stack.
   std::size_t deepest = 16;
   std::size_t most_values = std::numeric_limits<std::size_t>::max();  ///< kept or not
@@ -37,7 +37,13 @@ nlohmann::ordered_json parse_compact(std::string_view text, const std::string& s
 /// The points of a binary that parse_compact made [2 or 3 × any].
 Points points_of(const nlohmann::ordered_json& value);
 
+/// Points as JSON: a list of lists of numbers.
+nlohmann::ordered_json json_of(const Points& points);
+
 /// A value as a message shows it: on one line, cut where it is long.
 std::string shown(const nlohmann::ordered_json& value);
+
+/// The name of a field, which is the user's text, as part of a pointer in a message.
+std::string shown_name(const std::string& name);
 
 }  // namespace nuno

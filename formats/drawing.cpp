@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "encoding.h"
 #include "text_file.h"
 
 namespace nuno {
@@ -69,6 +70,7 @@ Points read_curve(const std::string& curve) {
     throw InputError(fmt::format("{}: does not end in {}", path, fmt::join(extensions, ", ")));
   }
   const std::string text = read_file(path, path, "a drawing", largest_file);
+  require_text(text, path);
   if (has_extension(path, ".svg")) return parse_svg(text, path, name);
   if (has_extension(path, ".obj")) return parse_obj_curve(text, path, name);
   if (!name.empty()) {

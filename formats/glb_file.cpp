@@ -164,6 +164,35 @@ struct Shapes {
   }
 };
 
+/// One node, with a mesh of this primitive.
+Json scene_with(const std::string& name, const Json& primitive) {
+  return {{"asset", {{"version", "2.0"}, {"generator", "nuno"}}},
+          {"scene", 0},
+          {"scenes", {{{"nodes", {0}}}}},
+          {"nodes", {{{"name", name}, {"mesh", 0}}}},
+          {"materials",
+           {{{"name", "cloth"},
+             {"doubleSided", true},
+             {"pbrMetallicRoughness",
+              {{"baseColorFactor", {0.55, 0.18, 0.16, 1.0}},
+               {"metallicFactor", 0.0},
+               {"roughnessFactor", 0.8}}}}}},
+          {"meshes", {{{"name", name}, {"primitives", {primitive}}}}}};
+}
+
+/// All that stands before the bytes of the buffer; false where the file would be too large.
+bool write_head(std::FILE* file, const Json& gltf, std::size_t bytes) {
+  std::string head = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
+  head.resize((head.size() + 3) / 4 * 4, ' ');
+  const std::size_t total = 12 + 8 + head.size() + 8 + bytes;
+  if (total > std::numeric_limits<std::uint32_t>::max()) return false;
+  write_words(file, {magic, version, static_cast<std::uint32_t>(total)});
+  write_words(file, {static_cast<std::uint32_t>(head.size()), json_chunk});
+  write(file, head.data(), head.size());
+  write_words(file, {static_cast<std::uint32_t>(bytes), binary_chunk});
+  return true;
+}
+
 }  // namespace
 
 void write_glb(std::FILE* file, const std::string& name, const Mesh& mesh,
@@ -193,18 +222,7 @@ void write_glb(std::FILE* file, const std::string& name, const Mesh& mesh,
     weights.push_back(0);
     names.push_back(fmt::format("{:.4f} s", times[k]));
   }
-  Json gltf = {{"asset", {{"version", "2.0"}, {"generator", "nuno"}}},
-               {"scene", 0},
-               {"scenes", {{{"nodes", {0}}}}},
-               {"nodes", {{{"name", name}, {"mesh", 0}}}},
-               {"materials",
-                {{{"name", "cloth"},
-                  {"doubleSided", true},
-                  {"pbrMetallicRoughness",
-                   {{"baseColorFactor", {0.55, 0.18, 0.16, 1.0}},
-                    {"metallicFactor", 0.0},
-                    {"roughnessFactor", 0.8}}}}}},
-               {"meshes", {{{"name", name}, {"primitives", {primitive}}}}}};
+  Json gltf = scene_with(name, primitive);
   std::vector<float> keys(times.begin(), times.end()), values;
   if (targets > 0) {
     gltf["meshes"][0]["weights"] = weights;
@@ -223,17 +241,10 @@ void write_glb(std::FILE* file, const std::string& name, const Mesh& mesh,
   gltf["accessors"] = document.accessors();
   gltf["buffers"] = {{{"byteLength", document.bytes()}}};
 
-  std::string head = gltf.dump(-1, ' ', false, Json::error_handler_t::replace);
-  head.resize((head.size() + 3) / 4 * 4, ' ');
-  const std::size_t total = 12 + 8 + head.size() + 8 + document.bytes();
-  if (total > std::numeric_limits<std::uint32_t>::max()) {
+  if (!write_head(file, gltf, document.bytes())) {
     throw OutputError(fmt::format("{} frames of {} vertices are more than the 4 GiB of a .glb",
                                   positions.size(), corners.vertex.size()));
   }
-  write_words(file, {magic, version, static_cast<std::uint32_t>(total)});
-  write_words(file, {static_cast<std::uint32_t>(head.size()), json_chunk});
-  write(file, head.data(), head.size());
-  write_words(file, {static_cast<std::uint32_t>(document.bytes()), binary_chunk});
   const auto write_floats = [&](const Floats& all) {
     write(file, all.data(), static_cast<std::size_t>(all.size()) * sizeof(float));
   };

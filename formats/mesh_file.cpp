@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "encoding.h"
 #include "text_file.h"
 
 namespace nuno {
@@ -53,7 +54,9 @@ Mesh parse_mesh(const std::string& bytes, const std::string& path) {
     return parse_gltf(bytes, mesh_file(path), morph_target(path));
   }
   require_text_mesh(path);
-  return has_extension(path, ".obj") ? parse_obj(bytes, path) : parse_ply(bytes, path);
+  const bool is_obj = has_extension(path, ".obj");
+  if (is_obj) require_text(bytes, path);
+  return is_obj ? parse_obj(bytes, path) : parse_ply(bytes, path);
 }
 
 }  // namespace nuno

@@ -15,6 +15,8 @@
 
 #include <unistd.h>
 
+#include "encoding.h"
+
 namespace nuno {
 namespace {
 
@@ -103,30 +105,6 @@ void require_permission(const std::string& path) {
 }
 
 constexpr const char* progress_start = "\r\x1b[K";  // of an emptied line
-
-/// Bytes of the character that `text`, which is not empty, begins with; 0 where that is no UTF-8 or
-/// no character of XML.
-std::size_t character_length(std::string_view text) {
-  const auto at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char byte = at(0);
-  const std::size_t length = byte < 0x80   ? 1
-                             : byte < 0xc2 ? 0
-                             : byte < 0xe0 ? 2
-                             : byte < 0xf0 ? 3
-                             : byte < 0xf5 ? 4
-                                           : 0;
-  if (length == 0 || length > text.size()) return 0;
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((at(k) & 0xc0) != 0x80) return 0;
-  }
-  // Overlong forms, surrogates, and code points that XML forbids.
-  if (length == 3 && ((byte == 0xe0 && at(1) < 0xa0) || (byte == 0xed && at(1) > 0x9f) ||
-                      (byte == 0xef && at(1) == 0xbf && at(2) > 0xbd))) {
-    return 0;
-  }
-  if (length == 4 && ((byte == 0xf0 && at(1) < 0x90) || (byte == 0xf4 && at(1) > 0x8f))) return 0;
-  return length;
-}
 
 // When progress is told off a terminal again; all threads work at the same for a person.
 using Clock = std::chrono::steady_clock;
@@ -225,11 +203,22 @@ std::string printable(std::string text) {
   return result;
 }
 
+std::string message_for_people(const std::string& message) {
+  constexpr std::size_t most = 400, start = 250;
+  std::string text = printable(message);
+  if (text.size() <= most) return text;
+  std::size_t cut = start, rest = text.size() - (most - start - 5);
+  const auto is_inside = [&](std::size_t i) { return (text[i] & '\xc0') == '\x80'; };
+  while (is_inside(cut)) --cut;
+  while (rest < text.size() && is_inside(rest)) ++rest;
+  return text.substr(0, cut) + " … " + text.substr(rest);
+}
+
 // A standard error that takes nothing is no reason to stop: fputs and not fmt::print, which throws.
 
 void complain(const std::string& message) {
   clear_progress();
-  std::fputs((printable(message) + '\n').c_str(), stderr);
+  std::fputs((message_for_people(message) + '\n').c_str(), stderr);
 }
 
 void note(const std::string& message) { complain(message); }

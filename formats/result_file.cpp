@@ -6,7 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "compact_json.h"
 #include "result_json.h"
+#include "scene_json.h"
 
 namespace nuno {
 namespace {
@@ -45,14 +47,6 @@ void print(std::FILE* file, const Json& value, std::size_t indent = 0) {
   fmt::print(file, "\n{:{}}{}", "", indent, is_object ? '}' : ']');
 }
 
-Json to_json(const Points& points) {
-  Json array = Json::array();
-  for (Index i = 0; i < points.cols(); ++i) {
-    array.push_back(std::vector<double>(points.col(i).begin(), points.col(i).end()));
-  }
-  return array;
-}
-
 Json to_json(const Optimization& optimization) {
   Json result = search_head(optimization.optimizer, optimization.summary);
   if (optimization.robust_error) result["robust_error"] = *optimization.robust_error;
@@ -79,12 +73,8 @@ Json to_json(const Optimization& optimization) {
   }
   if (optimization.refinement) {
     const RefineSummary& refinement = *optimization.refinement;
-    Json reference_correction = Json::array();
-    for (const Points& offset : refinement.reference_correction)
-      reference_correction.push_back(to_json(offset));
     Json& told = result["refinement"];
     told = refinement_head(refinement);
-    told["reference_correction"] = reference_correction;
     if (std::isfinite(refinement.error_before)) told["error_before"] = refinement.error_before;
   }
   return result;
@@ -97,7 +87,7 @@ void print_frames(std::FILE* file, const Problem& problem, const Rollout& rollou
   const char* separator = "\n";
   for (const Points& positions : rollout.frame_positions) {
     problem.stop_where_asked();
-    fmt::print(file, "{}   {}", separator, on_one_line(to_json(positions)));
+    fmt::print(file, "{}   {}", separator, on_one_line(json_of(positions)));
     separator = ",\n";
   }
   fmt::print(file, "\n  ]\n }}");
@@ -142,20 +132,23 @@ std::string optimization_to_json(const Optimization& optimization) {
   return to_json(optimization).dump();
 }
 
-void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+void write_result(std::FILE* file, const AnyScene& input, const Backend& backend,
                   const Rollout& rollout, double sensitivity,
                   const std::optional<Optimization>& optimization) {
-  write_result(file, scene, backend, rollout, sensitivity,
+  write_result(file, input, backend, rollout, sensitivity,
                optimization ? optimization_to_json(*optimization) : "");
 }
 
-void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+void write_result(std::FILE* file, const AnyScene& input, const Backend& backend,
                   const Rollout& rollout, double sensitivity, const std::string& optimization) {
   const Problem& problem = backend.problem();
   Json head = {{"nuno_result", 1}};
-  head.update(result_head(scene, backend, rollout));
+  head.update(result_head(scene_of(input).name, backend, rollout));
   head["sensitivity"] = sensitivity;
   if (rollout.gains.count() > 1) head["alphas"] = rollout.gains.groups();
+  for (const Points& correction : problem.reference_correction) {
+    head["reference_correction"].push_back(json_of(correction));
+  }
   if (!optimization.empty()) head["optimization"] = Json::parse(optimization);
   if (problem.is_sheet()) {
     head["kind"] = "sheet";
@@ -163,10 +156,11 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
     head["crossings"] =
         crossings_head(flight_crossings(problem, rollout.frame_times, rollout.frame_positions));
   }
-  head["launch_velocity"] = to_json(rollout.launch_velocity);
-  head["target"] = to_json(problem.target);
-  head["final"] = to_json(rollout.final);
-  head["final_velocity"] = to_json(rollout.final_velocity);
+  head["input"] = json_of(input);
+  head["launch_velocity"] = json_of(rollout.launch_velocity);
+  head["target"] = json_of(problem.target);
+  head["final"] = json_of(rollout.final);
+  head["final_velocity"] = json_of(rollout.final_velocity);
 
   fmt::print(file, "{{\n");
   for (const auto& item : head.items()) {

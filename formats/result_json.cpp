@@ -35,6 +35,8 @@ Json result_head(const std::string& scene, const Backend& backend, const Rollout
 Json search_head(const std::string& optimizer, const OptimizeSummary& summary) {
   return {{"optimizer", optimizer},
           {"status", word_for(summary.status)},
+          {"reason", summary.reason},
+          {"at_largest_gain", summary.at_largest_gain},
           {"evaluations", summary.evaluations},
           {"seconds", summary.seconds}};
 }

@@ -17,6 +17,7 @@
 
 #include "compact_json.h"
 #include "json_field.h"
+#include "scene_json.h"
 #include "scene_mesh.h"
 
 namespace nuno {
@@ -47,10 +48,9 @@ void require_known_fields(const Json& object, const Field& at,
     if (std::ranges::find(known, item.key()) != known.end()) continue;
     const auto nearest = *std::ranges::min_element(
         known, {}, [&](std::string_view candidate) { return edit_distance(name, candidate); });
-    // The name is the user's text: quoted and escaped as JSON, it stays on one line.
-    std::string quoted = shown(Json(item.key()));
-    at.child(quoted.substr(1, quoted.size() - 2))
-        .refuse(fmt::format("{} is not a known field; the nearest is \"{}\"", quoted, nearest));
+    at.child(shown_name(item.key()))
+        .refuse(fmt::format("{} is not a known field; the nearest is \"{}\"",
+                            shown(Json(item.key())), nearest));
   }
 }
 
@@ -113,7 +113,8 @@ constexpr std::array arrival_words = {Word<Arrival>{"pass", Arrival::pass},
                                       Word<Arrival>{"settle", Arrival::settle}};
 constexpr std::array target_length_words = {Word<TargetLength>{"fit", TargetLength::fit},
                                             Word<TargetLength>{"as-drawn", TargetLength::as_drawn}};
-
+constexpr std::array target_order_words = {Word<TargetOrder>{"as-drawn", TargetOrder::as_drawn},
+                                           Word<TargetOrder>{"reversed", TargetOrder::reversed}};
 constexpr std::array rest_words = {Word<Rest>{"initial", Rest::initial},
                                    Word<Rest>{"flat", Rest::flat}};
 
@@ -139,14 +140,15 @@ std::string_view word_for(const Words& words, Enum value) {
 constexpr std::array<std::string_view, 2> shape_fields = {"initial", "target"};
 
 /// A scene's fields take numbers and words, but for its shapes.
-const JsonForm scene_form = {
-    .points = {{"/initial", 0},
-               {"/target", 0},
-               {"/initial/vertices", 0},
-               {"/initial/texture_coordinates", 0},
-               {"/target/vertices", 0}},
-    .longest_list = 64,
-    .long_lists = {"/initial/faces", "/initial/texture_corners", "/initial/file_vertices"}};
+const JsonForm scene_form = {.points = {{"/initial", 0},
+                                        {"/target", 0},
+                                        {"/initial/vertices", 0},
+                                        {"/initial/texture_coordinates", 0},
+                                        {"/target/vertices", 0}},
+                             .lists = {{"/initial/faces", most_file_faces},
+                                       {"/initial/texture_corners", most_file_faces},
+                                       {"/initial/file_vertices", most_file_vertices}},
+                             .longest_list = 64};
 
 // Every field of a scene file stands here once, with the words that it may have; what lists, reads
 // and writes scenes visits them.
@@ -167,6 +169,9 @@ void visit_last(SceneOf& scene, Visit&& visit) {
   visit("arrival", scene.arrival, arrival_words);
   visit("damping_ratio", scene.damping_ratio);
   visit("target_length", scene.target_length, target_length_words);
+  if constexpr (requires { scene.target_order; }) {
+    visit("target_order", scene.target_order, target_order_words);
+  }
   visit("time_step", scene.time_step);
   visit("frames_per_second", scene.frames_per_second);
 }
@@ -328,16 +333,21 @@ SheetInput read_whole_sheet(const Json& json, const std::string& source) {
 
 }  // namespace
 
-AnyScene read_scene(const std::string& path) { return parse_any_scene(read_input(path), path); }
+const Scene& scene_of(const AnyScene& scene) {
+  if (const auto* chain = std::get_if<ChainScene>(&scene)) return *chain;
+  return std::get<SheetInput>(scene).scene;
+}
+
+AnyScene scene_from(const Json& json, const std::string& source, const std::string& folder) {
+  if (names_meshes(json)) return read_sheet_of_files(json, source, folder);
+  if (has_meshes(json)) return read_whole_sheet(json, source);
+  return read_chain(json, source);
+}
 
 AnyScene parse_any_scene(const std::string& text, const std::string& path) {
   const std::string source = name_of_input(path);
-  const Json json = parse_compact(text, source, scene_form);
-  if (names_meshes(json)) {
-    return read_sheet_of_files(json, source, std::filesystem::path(path).parent_path());
-  }
-  if (has_meshes(json)) return read_whole_sheet(json, source);
-  return read_chain(json, source);
+  return scene_from(parse_compact(text, source, scene_form), source,
+                    std::filesystem::path(path).parent_path().string());
 }
 
 AnyScene parse_whole_scene(const std::string& text, const std::string& source) {
@@ -349,6 +359,8 @@ AnyScene parse_whole_scene(const std::string& text, const std::string& source) {
   if (has_meshes(json)) return read_whole_sheet(json, source);
   return read_chain(json, source);
 }
+
+AnyScene read_scene(const std::string& path) { return parse_any_scene(read_input(path), path); }
 
 ChainScene parse_scene(const std::string& text, const std::string& source) {
   const Json json = parse_compact(text, source, scene_form);
@@ -404,27 +416,35 @@ std::string fields_to_json(const AnyScene& any) {
   return json.dump(1);
 }
 
-std::string to_json(const ChainScene& scene) {
+namespace {
+
+/// All fields, with these shapes in their places.
+template <typename SceneOf>
+Json json_of_scene(const SceneOf& scene, Json initial, Json target) {
   Json json = {{"nuno_scene", 1}};
   const FieldWriter write{json};
   visit_first(scene, write);
-  json["initial"] = to_json(scene.initial);
-  json["target"] = to_json(scene.target);
+  json["initial"] = std::move(initial);
+  json["target"] = std::move(target);
   visit_material(scene.cloth, FieldWriter{json["cloth"]});
   visit_last(scene, write);
-  return json.dump(1);
+  return json;
 }
 
-std::string to_json(const SheetInput& sheet) {
-  Json json = {{"nuno_scene", 1}};
-  const FieldWriter write{json};
-  visit_first(sheet.scene, write);
-  json["initial"] = to_json(sheet.mesh);
-  json["target"] = {{"vertices", to_json(sheet.scene.target)}};
-  visit_material(sheet.scene.cloth, FieldWriter{json["cloth"]});
-  visit_last(sheet.scene, write);
-  return json.dump();
+}  // namespace
+
+Json json_of(const AnyScene& any) {
+  if (const auto* chain = std::get_if<ChainScene>(&any)) {
+    return json_of_scene(*chain, json_of(chain->initial), json_of(chain->target));
+  }
+  const auto& sheet = std::get<SheetInput>(any);
+  return json_of_scene(sheet.scene, json_of(sheet.mesh),
+                       {{"vertices", json_of(sheet.scene.target)}});
 }
+
+std::string to_json(const ChainScene& scene) { return json_of(AnyScene(scene)).dump(1); }
+
+std::string to_json(const SheetInput& sheet) { return json_of(AnyScene(sheet)).dump(); }
 
 SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
                        const std::string& source) {

@@ -87,18 +87,10 @@ Mesh mesh_in_scene(const Json& value, const Field& at, bool is_pose) {
   return mesh;
 }
 
-Json to_json(const Points& points) {
-  Json array = Json::array();
-  for (Index i = 0; i < points.cols(); ++i) {
-    array.push_back(std::vector<double>(points.col(i).begin(), points.col(i).end()));
-  }
-  return array;
-}
-
-Json to_json(const Mesh& mesh) {
-  Json value = {{"vertices", to_json(mesh.vertices)}, {"faces", mesh.faces}};
+Json json_of(const Mesh& mesh) {
+  Json value = {{"vertices", json_of(mesh.vertices)}, {"faces", mesh.faces}};
   if (!mesh.texture_corners.empty()) {
-    value["texture_coordinates"] = to_json(mesh.texture_coordinates);
+    value["texture_coordinates"] = json_of(mesh.texture_coordinates);
     value["texture_corners"] = mesh.texture_corners;
   }
   if (!mesh.file_vertices.empty()) value["file_vertices"] = mesh.file_vertices;

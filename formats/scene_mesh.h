@@ -19,9 +19,6 @@ namespace nuno {
 Mesh mesh_in_scene(const nlohmann::ordered_json& value, const Field& at, bool is_pose);
 
 /// The mesh as `initial` has it.
-nlohmann::ordered_json to_json(const Mesh& mesh);
-
-/// Points as lists of numbers.
-nlohmann::ordered_json to_json(const Points& points);
+nlohmann::ordered_json json_of(const Mesh& mesh);
 
 }  // namespace nuno

@@ -11,10 +11,11 @@
 namespace nuno::native {
 namespace {
 
-/// Steps that a flight needs, and the field that asks for them.
+/// Steps that a flight needs, and the field that asks for them, with its value.
 struct Wish {
   double steps = 0;
   const char* field = "";
+  double value = 0;
 };
 
 /// Explicit hinges. With ω their highest frequency and c their highest damping rate, the leapfrog
@@ -33,8 +34,10 @@ Wish stable_steps(const Problem& problem) {
   const double rate = per_hinge * chain.material.hinge_damping;
   // h = 4/(c + √(c² + 4ω²)), the root of h²ω² + 2hc = 4.
   const double h = safety * 4 / (rate + std::sqrt(rate * rate + 4 * squared_frequency));
-  return {problem.arrival_time / h,
-          rate * rate > 4 * squared_frequency ? "/cloth/hinge_damping" : "/cloth/hinge_stiffness"};
+  if (rate * rate > 4 * squared_frequency) {
+    return {problem.arrival_time / h, "/cloth/hinge_damping", chain.material.hinge_damping};
+  }
+  return {problem.arrival_time / h, "/cloth/hinge_stiffness", chain.material.hinge_stiffness};
 }
 
 /// Implicit hinges are stable at any step, so the motion alone decides.
@@ -55,7 +58,7 @@ Wish motion_steps(const Problem& problem) {
       121 * std::sqrt(chain.material.hinge_stiffness / (mass * std::pow(chain.size, 3)));
   const double swings = std::min(third_wave * problem.arrival_time, 1000.0);
   return {std::max(problem.launch == Launch::ballistic ? 1600.0 : 1000.0, 20 * swings),
-          "/cloth/hinge_stiffness"};
+          "/cloth/hinge_stiffness", chain.material.hinge_stiffness};
 }
 
 }  // namespace
@@ -66,8 +69,10 @@ ChainSteps choose_chain_steps(const Problem& problem) {
   // What a step with implicit hinges takes of one with explicit ones: 2, with derivatives 2.2 to 3.
   constexpr double cost = 2.5;
 
-  Wish asked{default_steps, "/arrival_time"};
-  if (problem.time_step) asked = {problem.arrival_time / *problem.time_step, "/time_step"};
+  Wish asked{default_steps, "/arrival_time", problem.arrival_time};
+  if (problem.time_step) {
+    asked = {problem.arrival_time / *problem.time_step, "/time_step", *problem.time_step};
+  }
   if (!(asked.steps < std::numeric_limits<double>::infinity()) || !(asked.steps > 0)) {
     throw InputError(fmt::format("/time_step: {} is not > 0", *problem.time_step));
   }
@@ -79,8 +84,8 @@ ChainSteps choose_chain_steps(const Problem& problem) {
   const Wish& wish = implicit_hinges ? implicit_wish : explicit_wish;
   const double steps = std::ceil(wish.steps * (1 - 1e-12));
   if (!(steps <= most_steps)) {
-    throw InputError(fmt::format("{}: asks for {:.3g} steps on native, which is not <= {:.0f}",
-                                 wish.field, steps, most_steps));
+    throw InputError(fmt::format("{}: {} takes {:.3g} steps on native, which is not <= {:.0f}",
+                                 wish.field, wish.value, steps, most_steps));
   }
   return {std::max<Index>(static_cast<Index>(steps), 1), implicit_hinges};
 }

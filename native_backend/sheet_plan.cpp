@@ -52,20 +52,26 @@ double largest_eigenvalue(const Sheet& sheet, const LinearElements& linear,
   return eigenvalue;
 }
 
-/// The largest stable step, and the field that asks for it. With ω the highest frequency and c the
+/// A field of the scene, with its value.
+struct Asker {
+  const char* field = "";
+  double value = 0;
+};
+
+/// The largest stable step, and what asks for it. With ω the highest frequency and c the
 /// highest damping rate, the leapfrog with lagging dashpots is stable where h²ω² + 2hc < 4.
 struct StableStep {
   double h = 0;
-  const char* field = "";
+  Asker asker;
 };
 
-StableStep stable_step(const Sheet& sheet, const LinearElements& linear,
-                       const char* stiffness_field, const char* damping_field) {
+StableStep stable_step(const Sheet& sheet, const LinearElements& linear, const Asker& stiffness,
+                       const Asker& damping) {
   const double squared = largest_eigenvalue(sheet, linear, linear.stiffness);
   const double rate = largest_eigenvalue(sheet, linear, linear.damping);
   // h = 4/(c + √(c² + 4ω²)), the root of h²ω² + 2hc = 4.
   return {4 / (rate + std::sqrt(rate * rate + 4 * squared)),
-          rate * rate > 4 * squared ? damping_field : stiffness_field};
+          rate * rate > 4 * squared ? damping : stiffness};
 }
 
 // ---- the order of the particles -------------------------------------------------------------
@@ -164,26 +170,30 @@ SheetSteps choose_steps(const Problem& problem) {
   constexpr double default_steps = 800;
 
   const Sheet& sheet = problem.sheet();
+  const SheetMaterial& cloth = sheet.material;
   const StableStep springs = stable_step(sheet, linear_springs(sheet, sheet.initial),
-                                         "/cloth/stretch_stiffness", "/cloth/stretch_damping");
+                                         {"/cloth/stretch_stiffness", cloth.stretch_stiffness},
+                                         {"/cloth/stretch_damping", cloth.stretch_damping});
   const StableStep hinges = stable_step(sheet, linear_hinges(sheet, sheet.initial),
-                                        "/cloth/bending_stiffness", "/cloth/bending_damping");
+                                        {"/cloth/bending_stiffness", cloth.bending_stiffness},
+                                        {"/cloth/bending_damping", cloth.bending_damping});
   const double usual = std::min(problem.arrival_time / default_steps, hinge_safety * hinges.h);
   double h = problem.time_step.value_or(problem.arrival_time / default_steps);
-  const char* field = problem.time_step ? "/time_step" : "/arrival_time";
+  Asker asker = problem.time_step ? Asker{"/time_step", *problem.time_step}
+                                  : Asker{"/arrival_time", problem.arrival_time};
   if (!(h > 0)) throw InputError(fmt::format("/time_step: {} is not > 0", h));
   if (!(h <= hinge_safety * hinges.h)) {
     h = hinge_safety * hinges.h;
-    field = hinges.field;
+    asker = hinges.asker;
   }
   // A smaller step than usual asks for more precision of all forces, so that the springs have as
   // many substeps in it as in the usual.
   const double substeps = std::ceil(std::max(h, usual) / (spring_safety * springs.h));
-  if (substeps > 1) field = springs.field;
+  if (substeps > 1) asker = springs.asker;
   const double steps = std::ceil(problem.arrival_time / h * (1 - 1e-12));
   if (!(steps * substeps <= most_steps)) {
-    throw InputError(fmt::format("{}: asks for {:.3g} steps on native, which is not <= {:.0f}",
-                                 field, steps * substeps, most_steps));
+    throw InputError(fmt::format("{}: {} takes {:.3g} steps on native, which is not <= {:.0f}",
+                                 asker.field, asker.value, steps * substeps, most_steps));
   }
   return {std::max<Index>(static_cast<Index>(steps), 1), static_cast<Index>(substeps)};
 }

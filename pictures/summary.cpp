@@ -6,6 +6,8 @@
 #include <nuno/output.h>
 #include <nuno/progress.h>
 
+#include <cmath>
+
 namespace nuno {
 
 std::string duration(double seconds) {
@@ -50,6 +52,11 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
              percent * rollout.error.mean, backend.problem().is_sheet() ? "size" : "length",
              percent * rollout.error.max);
   fmt::print(file, "  {:<17} {:.3g} m from the target's\n", "centroid", rollout.error.centroid);
+  const double scale = backend.problem().target_scale;
+  if (std::abs(scale - 1) > 1e-4) {
+    fmt::print(file, "  {:<17} scaled by {:.4f}, to the cloth's {}\n", "target", scale,
+               backend.problem().is_sheet() ? "area" : "length");
+  }
   fmt::print(file, "  {:<17} {:.4g} {}\n", "control effort", rollout.control_effort,
              effort_unit_name(cloth));
   fmt::print(file, "  {:<17} {:.3g} % at most on the way\n", "strain", 100 * rollout.max_strain);

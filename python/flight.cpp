@@ -64,7 +64,7 @@ std::vector<double> frames_together(std::vector<Points> frames) {
 void write_json(std::FILE* file, const Flight& flight) {
   Rollout rollout = flight.rollout;
   rollout.frame_positions = frames_apart(flight);
-  write_result(file, flight.scene->file.scene.name, FlownOn(flight), rollout, flight.sensitivity,
+  write_result(file, flight.scene->file.input, FlownOn(flight), rollout, flight.sensitivity,
                flight.optimization);
 }
 

@@ -49,12 +49,13 @@ py::tuple state_of(const HeldScene& scene) {
     return py::array_t<double>({points.cols(), points.rows()}, points.data());
   };
   py::tuple texture(0);
-  if (const auto& mesh = scene.file.mesh; mesh && mesh->texture_coordinates.cols() > 0) {
+  if (const Mesh* const mesh = scene.file.mesh(); mesh && mesh->texture_coordinates.cols() > 0) {
     texture = py::make_tuple(copy(mesh->texture_coordinates), mesh->texture_corners);
   }
   py::tuple welded(0);
-  if (scene.file.mesh)
-    welded = py::make_tuple(scene.file.mesh->file_vertices, scene.file.mesh->remarks);
+  if (const Mesh* const mesh = scene.file.mesh()) {
+    welded = py::make_tuple(mesh->file_vertices, mesh->remarks);
+  }
   return py::make_tuple(scene.file.path, fields_to_json(scene.given), copy(shapes.initial),
                         copy(shapes.target), shapes.faces, texture, welded);
 }

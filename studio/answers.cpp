@@ -14,6 +14,7 @@
 
 #include <nuno/conditioning.h>
 #include <nuno/feasibility.h>
+#include <nuno/output.h>
 #include <nuno/progress.h>
 #include "formats/result_json.h"
 #include "studio/page_files.h"
@@ -53,7 +54,6 @@ void append(std::string& text, const std::vector<Points>& shapes, const Turn& tu
 Json to_json(const OptimizeSummary& summary, const std::string& optimizer) {
   Json result = search_head(optimizer, summary);
   result["alpha"] = summary.gain;
-  result["reason"] = summary.reason;
   result["history"] = history_of(summary);
   return result;
 }
@@ -144,7 +144,7 @@ Index gains_of_pareto_front(const Backend& backend) {
 }  // namespace
 
 Answer refusal(int status, const std::string& message) {
-  return {.status = status, .body = dump({{"error", message}})};
+  return {.status = status, .body = dump({{"error", message_for_people(message)}})};
 }
 
 Answer diverged_answer(const SceneFile& file, const Backend& backend, const Rollout& flight) {

@@ -69,7 +69,7 @@ Answer result_answer(const Request& request) {
   if (done.found) optimization = Optimization{request.options.optimizer, *done.found};
   if (done.refined) optimization->refinement = done.refined;
   return {.body = printed([&](std::FILE* file) {
-            write_result(file, done.file.scene.name, *done.backend, done.flight,
+            write_result(file, done.file.input, *done.backend, done.flight,
                          bounded_sensitivity(*done.backend, done.flight), optimization);
           }),
           .file_name = "result.json"};
@@ -83,12 +83,13 @@ Answer animation_answer(const Request& request) {
   require_animation("flight" + format, done.file.scene.arrival_time, frames_per_second);
   const Cloth& cloth = done.backend->cloth();
   const double width = ribbon_width(cloth.size);
-  Animation animation{.name = done.file.scene.name,
-                      .mesh = done.file.mesh ? *done.file.mesh : ribbon_mesh(cloth.initial, width),
-                      .frames_per_second = frames_per_second,
-                      .times = done.flight.frame_times,
-                      .positions = done.flight.frame_positions};
-  if (!done.file.mesh) {
+  Animation animation{
+      .name = done.file.scene.name,
+      .mesh = done.file.mesh() ? *done.file.mesh() : ribbon_mesh(cloth.initial, width),
+      .frames_per_second = frames_per_second,
+      .times = done.flight.frame_times,
+      .positions = done.flight.frame_positions};
+  if (!done.file.mesh()) {
     for (Points& shape : animation.positions) shape = ribbon(shape, width);
   }
   return {.type = format == ".glb" ? "model/gltf-binary" : "application/octet-stream",

@@ -114,7 +114,7 @@ void require_quick(const SceneFile& file, const Backend& backend, const Options&
     throw InputError(
         fmt::format("{}: /{}: {} particles are not few enough for the studio: with {} steps on {}, "
                     "this is for nuno optimize",
-                    file.path, file.mesh ? "initial" : "particles", particles, backend.steps(),
+                    file.path, file.mesh() ? "initial" : "particles", particles, backend.steps(),
                     backend.name()));
   }
   if (options.refine) require_refinable(file);

@@ -225,5 +225,16 @@ TEST(Conditioning, TellsWhereAndWhyARolloutDiverged) {
             "longer finite");
 }
 
+TEST(Comparison, TellsOfACentroidThatAlignedShapesHide) {
+  Comparison comparison;
+  comparison.cloth_length = 2;
+  comparison.rows[0].backend = "exact";
+  comparison.rows[1].backend = "lost";
+  comparison.rows[1].error.centroid = 1e-3;
+  EXPECT_EQ(centroid_warning(comparison), "");
+  comparison.rows[1].error.centroid = 0.5;
+  EXPECT_EQ(centroid_warning(comparison), "lost's centroid is 25 % of L from the target's");
+}
+
 }  // namespace
 }  // namespace nuno

@@ -8,7 +8,7 @@
 
 namespace nuno {
 
-/// An engine as the shared suites see it, with what its arithmetic can promise.
+/// An engine as the shared suites see it, with what its arithmetic can hold.
 struct Engine {
   const char* name;
   std::unique_ptr<Backend> (*make)(const Problem& problem, std::optional<double> time_step);

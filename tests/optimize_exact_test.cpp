@@ -429,5 +429,21 @@ TEST(ParetoFront, GivesTheBetterOfTheLimitAndTheCheaperPoint) {
   EXPECT_EQ(found.error, 3);
 }
 
+TEST(GlobalSearch, SaysWhetherTheBestGainIsTheLargestThatItMayTry) {
+  for (const double bottom : {0.5, 3.0}) {  // of E(α), on either side of the largest gain
+    Objective objective;
+    objective.errors = [bottom](std::span<const double> gains) {
+      std::vector<double> errors;
+      for (const double gain : gains) errors.push_back(1 + std::abs(gain - bottom));
+      return errors;
+    };
+    objective.largest_gain = 2;
+    objective.why_largest = "that is the rule";
+    const OptimizeSummary found = global_search(objective);
+    EXPECT_EQ(found.at_largest_gain, bottom > 2) << found.reason;
+    EXPECT_EQ(found.reason.ends_with("the largest gain: that is the rule"), bottom > 2);
+  }
+}
+
 }  // namespace
 }  // namespace nuno

@@ -29,8 +29,10 @@ Json written(Write&& write) {
 
 Json result_of(const Backend& backend, const Rollout& flight,
                const std::optional<Optimization>& optimization = std::nullopt) {
+  ChainScene scene;
+  scene.name = "name";
   return written(
-      [&](std::FILE* file) { write_result(file, "name", backend, flight, 1.5, optimization); });
+      [&](std::FILE* file) { write_result(file, scene, backend, flight, 1.5, optimization); });
 }
 
 TEST(ResultFile, HasTheErrorsOverTheSizeOfTheCloth) {

@@ -176,8 +176,8 @@ TEST_F(Result, OfRefinementIsNearerAndSaysHowItCorrected) {
   EXPECT_LT(refined["error"]["mean"].get<double>(), 0.7 * plain["error"]["mean"].get<double>());
   EXPECT_LT(refined["control_effort"].get<double>(), plain["control_effort"].get<double>());
   const Json& refinement = refined["optimization"]["refinement"];
-  ASSERT_EQ(refinement["reference_correction"].size(), 4u);
-  for (const Json& offset : refinement["reference_correction"]) {
+  ASSERT_EQ(refined["reference_correction"].size(), 4u);
+  for (const Json& offset : refined["reference_correction"]) {
     EXPECT_EQ(offset.size(), refined["final"].size());
   }
   const Json before = simulated({"simulate", n, "--alpha", Json(refined["alpha"]).dump()});

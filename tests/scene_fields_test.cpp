@@ -38,6 +38,7 @@ Json chain_with_every_field() {
           {"arrival", "settle"},
           {"damping_ratio", 0.35},
           {"target_length", "as-drawn"},
+          {"target_order", "reversed"},
           {"time_step", 0.0015},
           {"frames_per_second", 24.0}};
 }
@@ -72,6 +73,7 @@ TEST(ChainFields, AreAllRead) {
   EXPECT_EQ(scene.cloth.stretch_damping, 7e-4);
   EXPECT_EQ(scene.cloth.hinge_stiffness, 2e-3);
   EXPECT_EQ(scene.cloth.hinge_damping, 1e-7);
+  EXPECT_EQ(scene.target_order, TargetOrder::reversed);
   expect_fields_of_any_cloth(scene);
 }
 
@@ -87,6 +89,7 @@ TEST(ChainFields, AreWrittenWhereTheyAreTheDefaultToo) {
   every["arrival"] = "pass";
   every["damping_ratio"] = 0.0;
   every["target_length"] = "fit";
+  every["target_order"] = "as-drawn";
   EXPECT_EQ(Json::parse(to_json(parse_scene(every.dump(), "file.json"))), every);
 }
 
@@ -99,6 +102,8 @@ TEST(ChainFields, ReachTheProblem) {
   EXPECT_EQ(problem.arrival, Arrival::settle);
   EXPECT_EQ(problem.damping_ratio, 0.35);
   EXPECT_EQ(problem.target_scale, 1);
+  EXPECT_EQ(problem.target.col(0), scene.target.col(2)) << "reversed";
+  EXPECT_EQ(problem.target.col(4), scene.target.col(0));
   EXPECT_EQ(problem.time_step, 0.0015);
   EXPECT_EQ(problem.cloth().particles(), 5);
   EXPECT_EQ(problem.cloth().gravity, 1.5);

@@ -164,6 +164,45 @@ TEST(SheetMorph, RollsUpAnyNumberOfTimes) {
   }
 }
 
+/// A strip of eight triangles in a zigzag, its inner edges folded by `share` of 1 rad and −0.8 rad.
+Points folded(const Points& flat, double share) {
+  Points x = flat;
+  Eigen::Affine3d moved = Eigen::Affine3d::Identity();  // what comes after an edge goes with it
+  for (Index i = 1; i + 2 < flat.cols(); ++i) {
+    const Vector3d end = flat.col(i), edge = flat.col(i + 1) - flat.col(i);
+    const double angle = share * (i % 3 == 0 ? -0.8 : 1);
+    moved = moved * Eigen::Translation3d(end) *
+            Eigen::AngleAxisd(angle, (i % 2 ? -1 : 1) * edge.normalized()) *
+            Eigen::Translation3d(-end);
+    x.col(i + 2) = moved * Vector3d(flat.col(i + 2));
+  }
+  return x;
+}
+
+// Folds about edges in different directions, one after another: neighbours turn against each other
+// steadily only if every face turns about an axis that turns with it.
+TEST(SheetMorph, FoldsEveryEdgeOfAStripSteadily) {
+  Points flat(3, 10);
+  Faces faces;
+  for (Index i = 0; i < flat.cols(); ++i) {
+    flat.col(i) << 0.25 * static_cast<double>(i), 0, i % 2 ? 0.45 : 0;
+    if (i + 2 < flat.cols()) faces.push_back({i, i + 1, i + 2});
+  }
+  const Problem problem = problem_of(flat, faces, folded(flat, 1));
+  const Hinges& hinges = problem.sheet().hinges;
+  const std::vector<Points> shapes = way(problem, 64);
+  for (std::size_t n = 0; n < shapes.size(); ++n) {
+    const Points expected = folded(flat, static_cast<double>(n) / 64);
+    for (Index h = 0; h < hinges.count(); ++h) {
+      // 1e-4 rad is what steps of second order leave of a turn of 1/32 rad each; of first order, 20
+      // times as much.
+      EXPECT_NEAR(dihedral_angle(shapes[n], hinges.corners.col(h)),
+                  dihedral_angle(expected, hinges.corners.col(h)), 3e-4)
+          << n << " " << h;
+    }
+  }
+}
+
 TEST(SheetMorph, IsTheSameForRenumberedVertices) {
   for (const auto& [name, mesh, target] : throws()) {
     const Index n = target.cols();

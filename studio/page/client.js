@@ -48,7 +48,7 @@ export class Channel {
 
   get busy() { return this.running > 0 || this.waiting !== null; }
 
-  // `work(page, signal)` is a promise; `done(result)` and `failed(error)` are called for what is not
+  // `work(page, signal)` is async; `done(result)` and `failed(error)` are called for what is not
   // overtaken by then.
   run({ work, done, failed, urgent }) {
     const job = { work, done, failed, number: ++this.newest, signal: this.dropping.signal };

@@ -155,7 +155,7 @@ export class Throws {
     });
   }
 
-  // Other work with the program, a promise, that counts as well.
+  // Other work with the program, to be awaited, that counts as well.
   async during(work) {
     this.others++;
     this.settle();

@@ -153,6 +153,7 @@ def throws_a_curve_to_another():
     bpy.context.scene.frame_set(41)
     points = world_points(thrown)
     middle = (points[: len(points) // 2] + points[len(points) // 2 :]) / 2
+    assert re.search(r"target +scaled by 0\.\d+, to the cloth's length", bpy.context.scene.nuno_throw.words)
     # The ends of an arc that nuno has scaled to the length of the cloth, about the middle of both.
     ends = numpy.array([[1.6, 1.2, 1.5], [2.4, 1.8, 1.5]])
     assert numpy.abs(middle[[0, -1]].mean(axis=0)[:2] - ends.mean(axis=0)[:2]).max() < 0.01, middle[[0, -1]]

@@ -75,7 +75,10 @@ bool is_let_in(const Work& work) {
     work();
     return true;
   } catch (const InputError& error) {
-    require_text(printable(error.what()));  // as people see it: a name may hold any byte
+    // As people see it: a name may hold any byte. Cut where it stands, not just before it is told.
+    const std::string said = message_for_people(error.what());
+    require_text(said);
+    require(said == printable(error.what()), "a long message", error.what());
     return false;
   }
 }

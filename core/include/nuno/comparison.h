@@ -63,6 +63,10 @@ Comparison compare_engines(const std::string& scene, const Backend& first, const
 /// stretched.
 bool is_well_conditioned(const Comparison& comparison);
 
+/// What aligned centroids hide of a comparison: an engine that does not bring the cloth's to the
+/// target's, in words; empty where both do.
+std::string centroid_warning(const Comparison& comparison);
+
 /// Median, 95th percentile (the nearest of the values) and largest of some numbers.
 struct Spread {
   double median = 0, most = 0, worst = 0;

@@ -23,6 +23,8 @@ struct Objective {
   /// Where E(α) ends to make sense [N/m]: gains above are not resolved by the engine's time step
   /// or, without damping (ζ < ½), pull the cloth through itself so often that E is noise.
   double largest_gain = std::numeric_limits<double>::infinity();
+  /// Why it ends there and what takes it farther, for people.
+  std::string why_largest = "the search ends there";
   /// An error that is as good as none [m], ≥ 0: below, the smallest gain is the best.
   double negligible = 0;
 };
@@ -48,6 +50,7 @@ struct OptimizeSummary {
   Index evaluations = 0;            ///< rollouts, those for derivatives too
   double seconds = 0;               ///< wall clock
   std::vector<Evaluation> history;  ///< descent: the path; global: every gain, ascending
+  bool at_largest_gain = false;     ///< the best may lie beyond what the objective allows
   std::string reason;               ///< why it stopped, for people
 };
 
@@ -81,7 +84,7 @@ struct GlobalSearchOptions {
 /// A scan, then a refinement of the deepest valleys: where the objective knows its derivatives, on
 /// cubics through the arrivals of all particles, a round for all valleys in one batch; otherwise by
 /// Brent's method in one valley after another. Never worse than any gain that it has tried; a
-/// valley narrower than the scan, as fragile flights have, may be missed.
+/// valley narrower than the scan, as fragile flights have, may stay unseen.
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options = {});
 
 }  // namespace nuno

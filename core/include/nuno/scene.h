@@ -47,6 +47,12 @@ enum class TargetLength {
   as_drawn  ///< left as it is
 };
 
+/// Which end of a drawn target is the cloth's first.
+enum class TargetOrder {
+  as_drawn,  ///< where the line begins
+  reversed   ///< where it ends
+};
+
 /// What an animator asks of a cloth, whatever its form. Lengths in metres, y up, SI throughout.
 struct Scene {
   std::string name;
@@ -76,6 +82,7 @@ struct ChainScene : Scene {
   Index particles = 32;  ///< N, 3 … 1 000 000
   Points initial;        ///< drawn polyline [2 × any], at least 2 distinct points
   Points target;         ///< drawn polyline [2 × any], at least 2 distinct points
+  TargetOrder target_order = TargetOrder::as_drawn;
   ChainMaterial cloth;
 };
 

@@ -14,19 +14,34 @@
 
 namespace nuno {
 
-/// A scene file, read, validated and made ready to be flown.
+/// A scene file, or the scene of a result, read, validated and made ready to be flown.
 struct SceneFile {
   std::string path;
   Scene scene;  ///< what is asked, whatever the cloth's form
   Problem problem;
-  std::optional<Mesh> mesh = {};  ///< of a sheet's initial shape
+  AnyScene input = {};                    ///< the whole scene, as it is given
+  std::optional<PastFlight> flight = {};  ///< of a result; the problem does not know it
+
+  /// Of a sheet's initial shape; null for a chain.
+  const Mesh* mesh() const {
+    const auto* const sheet = std::get_if<SheetInput>(&input);
+    return sheet ? &sheet->mesh : nullptr;
+  }
 };
 
 /// `path` is what messages call the scene.
 SceneFile make_scene_file(const std::string& path, AnyScene scene);
 
-/// `time_step`, if given, takes the place of the scene's.
-SceneFile read_scene_file(const std::string& path, std::optional<double> time_step = std::nullopt);
+/// What a command asks of a scene otherwise than its file.
+struct SceneChanges {
+  std::optional<double> time_step = {};  ///< [s], > 0
+  bool reverses_target = false;          ///< of a chain
+};
+
+/// The chain's scene with its target from the other end; throws InputError for a sheet's.
+AnyScene with_reversed_target(AnyScene scene, const std::string& source);
+
+SceneFile read_scene_file(const std::string& path, const SceneChanges& changes = {});
 
 /// Frames per second with which a flight of this scene holds so many points [1/s].
 double frames_per_second_of(double points, const SceneFile& file);
@@ -96,8 +111,9 @@ struct ResolvedRollout {
   Rollout flight;
 };
 
-/// A rollout of the scene on its backend. Where it diverges, and the scene leaves the step to the
-/// engine, it is flown at a quarter and at a sixteenth of the step.
+/// A rollout of the scene on its backend, with its step error, unless that would take hours. Where
+/// it diverges, and the scene leaves the step to the engine, it is flown at a quarter and at a
+/// sixteenth of the step.
 ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
                                  const RolloutOptions& options = {});
 

@@ -64,6 +64,10 @@ std::FILE* people(const std::string& out);
 /// A text of a user's on one line, in valid UTF-8 and without codes that a terminal would obey.
 std::string printable(std::string text);
 
+/// A message as a person reads it: printable, and of at most 400 bytes; a longer one loses its
+/// middle.
+std::string message_for_people(const std::string& message);
+
 /// Says on standard error, on one line, what went wrong.
 void complain(const std::string& message);
 

@@ -6,6 +6,7 @@
 #include <nuno/pareto_front.h>
 #include <nuno/refine.h>
 #include <nuno/rollout.h>
+#include <nuno/scene_file.h>
 
 #include <cstdio>
 #include <optional>
@@ -26,8 +27,9 @@ struct Optimization {
   std::optional<RefineSummary> refinement = {};  ///< where the flight is refined
 };
 
-/// The result JSON of one rollout, which has not diverged.
-void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+/// The result JSON of one rollout, which has not diverged, of the scene `input`: it holds all that
+/// read_scene_or_result needs, for it to be flown again.
+void write_result(std::FILE* file, const AnyScene& input, const Backend& backend,
                   const Rollout& rollout, double sensitivity,
                   const std::optional<Optimization>& optimization);
 
@@ -35,7 +37,7 @@ void write_result(std::FILE* file, const std::string& scene, const Backend& back
 std::string optimization_to_json(const Optimization& optimization);
 
 /// The same result with that text in the place of the search; empty where there was none.
-void write_result(std::FILE* file, const std::string& scene, const Backend& backend,
+void write_result(std::FILE* file, const AnyScene& input, const Backend& backend,
                   const Rollout& rollout, double sensitivity, const std::string& optimization);
 
 /// compare.json. A point of an alpha curve at which a rollout diverged is null; nothing else is.

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <nuno/gains.h>
 #include <nuno/mesh.h>
 #include <nuno/scene.h>
 
+#include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace nuno {
 
@@ -22,6 +25,23 @@ struct Shapes {
   Faces faces = {};
 };
 
+/// What is asked, whatever the cloth's form.
+const Scene& scene_of(const AnyScene& scene);
+
+/// How the flight of a result was flown.
+struct PastFlight {
+  std::string backend;
+  Gains gains = 0;
+  Index steps = 0;                           ///< ≥ 1
+  std::vector<Points> reference_correction;  ///< as in Problem
+};
+
+/// A scene, or that of a result file and how it was flown.
+struct SceneOrResult {
+  AnyScene scene;
+  std::optional<PastFlight> flight;
+};
+
 /// Reads and validates a scene: a chain's, or, where `initial` and `target` name mesh files or are
 /// meshes themselves, a sheet's; "-" is standard input. A field that is left out has the default
 /// above; an unknown one is an error that names the nearest known one. The scene is named after the
@@ -33,6 +53,9 @@ AnyScene parse_any_scene(const std::string& text, const std::string& path);
 
 /// The same from text alone, whose meshes stand in it: no file is read.
 AnyScene parse_whole_scene(const std::string& text, const std::string& source);
+
+/// The same of a result file as well (see result_file.h).
+SceneOrResult read_scene_or_result(const std::string& path);
 
 /// The same from JSON text, of a chain alone: a text has no folder that meshes could be in.
 ChainScene parse_scene(const std::string& json, const std::string& source);
