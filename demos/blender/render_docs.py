@@ -171,7 +171,7 @@ def mesh_cache():
     napkin.modifiers.new("hem", "SOLIDIFY").thickness = 0.006
     bpy.context.scene.render.fps = 60  # the scene file's
     start = 1 / 60  # frame 1
-    poses = [pose(napkin, start + 1.5 * share) for share in (0.8, 0.9, 1)]
+    poses = [pose(napkin, start + 1.5 * share) for share in (0.95, 0.975, 1)]
     render("blender-mesh-cache", poses, napkin, (0.6, -1, 0.5))
 
 
