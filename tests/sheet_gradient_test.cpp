@@ -248,5 +248,15 @@ TEST(SheetGradient, AgreesWithTheTangentByTheGain) {
   }
 }
 
+TEST(SheetGradient, OfAFlightThatDivergedIsNone) {
+  const Problem problem = make_problem(throw_scene());
+  const auto backend = native::make_backend(problem);
+  const RolloutGradient gradient = backend->error_gradient(1000 * backend->largest_gain());
+  EXPECT_TRUE(is_torn(problem.cloth(), gradient.final));
+  EXPECT_EQ(gradient.gain, 0);
+  EXPECT_EQ(gradient.launch.size(), 0);
+  EXPECT_TRUE(gradient.reference_correction.empty());
+}
+
 }  // namespace
 }  // namespace nuno
