@@ -18,16 +18,13 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
   const bool keeps_frames = !out.empty() || file.problem.is_sheet();
   const double frames = keeps_frames ? file.scene.frames_per_second : 0;
   ResolvedRollout flown =
-      resolved_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
+      judged_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
   Rollout& flight = flown.flight;
   if (diverged(flight)) {
     report_divergence(file.path, asked, flight);
     return ExitStatus::diverged;
   }
   const Backend& backend = flown.finer ? *flown.finer : asked;
-  if (const auto half = at_finer_step(backend, file, 0.5)) {
-    flight.step_error = step_error(*half, flight);
-  }
   const double growth = bounded_sensitivity(backend, flight);
   if (!out.empty()) write_flight(out, file, backend, flight, growth, animation, optimization);
   print_summary(people(out), file.scene.name, backend, flight, growth);

@@ -171,7 +171,9 @@ std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& 
                                        double share) {
   const double steps = static_cast<double>(backend.steps()) / share;
   if (too_long(steps, file) || steps > most_steps) return nullptr;
-  return make_backend(backend.name(), file, backend.time_step() * share);
+  // The backend's problem, and not the file's: its reference may be corrected.
+  return make_backend(backend.name(), {file.path, file.scene, backend.problem()},
+                      backend.time_step() * share);
 }
 
 ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
@@ -183,6 +185,16 @@ ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, 
     if (!finer) return result;
     Rollout flight = rollout(*finer, gains, options);
     if (!diverged(flight)) return {std::move(finer), std::move(flight)};
+  }
+  return result;
+}
+
+ResolvedRollout judged_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
+                               const RolloutOptions& options) {
+  ResolvedRollout result = resolved_rollout(backend, file, gains, options);
+  if (diverged(result.flight)) return result;
+  if (const auto half = at_finer_step(result.finer ? *result.finer : backend, file, 0.5)) {
+    result.flight.step_error = step_error(*half, result.flight);
   }
   return result;
 }

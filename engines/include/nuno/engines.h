@@ -101,6 +101,10 @@ struct ResolvedRollout {
 ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
                                  const RolloutOptions& options = {});
 
+/// The same, and its step error, where a flight at half of its step would not take hours.
+ResolvedRollout judged_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
+                               const RolloutOptions& options = {});
+
 /// Makes the engine called `name` for the scene's problem corrected elsewhere, see refine.h; `name`
 /// and `file` must outlive it.
 MakeBackend backend_maker(std::string_view name, const SceneFile& file);
