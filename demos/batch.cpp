@@ -87,8 +87,8 @@ Finish thrown(Shot& shot, const std::string& engine, const std::stop_token& stop
   std::shared_ptr<const Backend> backend = make_backend(engine, file);
   const std::string_view optimizer = optimizer_names.front();
   const Optimization found{std::string(optimizer), run_optimizer(optimizer, objective(*backend))};
-  ResolvedRollout flown = resolved_rollout(*backend, file, found.summary.gain,
-                                           {.frames_per_second = file.scene.frames_per_second});
+  JudgedRollout flown = judged_rollout(*backend, file, found.summary.gain,
+                                       {.frames_per_second = file.scene.frames_per_second});
   if (flown.finer) backend = std::move(flown.finer);
   const auto flight = std::make_shared<const Rollout>(std::move(flown.flight));
   if (diverged(*flight)) {

@@ -33,8 +33,8 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
   // A sheet's are looked at, for where it passes through itself.
   const bool keeps_frames = !out.empty() || file.problem.is_sheet();
   const double frames = keeps_frames ? file.scene.frames_per_second : 0;
-  ResolvedRollout flown =
-      resolved_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
+  JudgedRollout flown =
+      judged_rollout(asked, file, gains, {.frames_per_second = frames, .tail = animation.tail});
   const Rollout& flight = flown.flight;
   if (diverged(flight)) {
     report_divergence(file.path, asked, flight);

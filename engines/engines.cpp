@@ -187,12 +187,14 @@ std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& 
                                        double share) {
   const double steps = static_cast<double>(backend.steps()) / share;
   if (too_long(steps, file) || steps > most_steps) return nullptr;
-  return make_backend(backend.name(), file, backend.time_step() * share);
+  // The backend's problem, and not the file's: its reference may be corrected.
+  return make_backend(backend.name(), {file.path, file.scene, backend.problem()},
+                      backend.time_step() * share);
 }
 
-ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
-                                 const RolloutOptions& options) {
-  ResolvedRollout result{nullptr, rollout(backend, gains, options)};
+JudgedRollout judged_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
+                             const RolloutOptions& options) {
+  JudgedRollout result{nullptr, rollout(backend, gains, options)};
   for (const double share : {1.0 / 4, 1.0 / 16}) {
     if (!diverged(result.flight) || file.scene.time_step) break;
     std::unique_ptr<Backend> finer = at_finer_step(backend, file, share);

@@ -78,9 +78,11 @@ std::vector<Gains> gains_of(const Array& array, const Backend& backend, const st
         shape_of_array(array), most_groups));
   }
   const Index particles = backend.cloth().particles();
-  if (groups > 1 && particles < fewest_particles(groups)) {
-    throw InputError(
-        fmt::format("{}: {} particles are too few for {} groups", at, particles, groups));
+  const Index fewest =
+      backend.problem().is_sheet() ? fewest_sheet_particles(groups) : fewest_particles(groups);
+  if (groups > 1 && particles < fewest) {
+    throw InputError(fmt::format("{}: {} particles are not >= {}, the fewest for {} groups", at,
+                                 particles, fewest, groups));
   }
   std::vector<Gains> gains;
   const auto step = static_cast<std::size_t>(groups);

@@ -101,8 +101,7 @@ py::array_t<double> errors_of(HeldBackend& self, const Array& alphas) {
 std::vector<ErrorSample> samples_of(HeldBackend& self, const Array& alphas) {
   const Backend& engine = *self.engine()->backend;
   if (!engine.has_derivatives()) {
-    throw InputError(fmt::format("{}: knows no derivatives; those that do: native, of {}",
-                                 engine.name(), "a chain"));
+    throw InputError(fmt::format("{}: knows no derivatives; native does", engine.name()));
   }
   const std::vector<Gains> gains = gains_of(alphas, engine, "alphas");
   std::vector<ErrorSample> samples;

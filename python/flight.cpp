@@ -121,7 +121,7 @@ py::tuple state_of(const Flight& flight) {
       copy(rollout.launch_velocity), copy(rollout.final), copy(rollout.final_velocity),
       py::make_tuple(rollout.error.mean, rollout.error.max, rollout.error.centroid),
       rollout.control_effort, rollout.max_strain, numbers(rollout.frame_times),
-      numbers(flight.frames), flight.sensitivity, flight.optimization);
+      numbers(flight.frames), flight.sensitivity, flight.optimization, rollout.step_error);
 }
 
 Flight flight_of_state(const py::tuple& state) {
@@ -147,6 +147,7 @@ Flight flight_of_state(const py::tuple& state) {
   flight.frames = numbers(11);
   flight.sensitivity = state[12].cast<double>();
   flight.optimization = state[13].cast<std::string>();
+  rollout.step_error = state[14].cast<std::optional<double>>();
   return flight;
 }
 
@@ -197,6 +198,9 @@ void add_numbers(Class& result) {
   result.def_readonly("sensitivity", &Flight::sensitivity,
                       "How much a small change at the start has grown by arrival [1].");
   result.def_property_readonly(
+      "step_error", [](const Flight& self) { return self.rollout.step_error; },
+      "How far half of the time step moves the end shape, over L [1]; None where not measured.");
+  result.def_property_readonly(
       "fragility", [](const Flight& self) { return fragility(self.sensitivity); },
       "The word of warning for a fragile flight; empty for a calm one.");
   result.def_readonly("optimization_json", &Flight::optimization,
@@ -231,15 +235,15 @@ void add_arrays(Class& result) {
 
 }  // namespace
 
-Flight fly(const ScenePointer& scene, const Backend& backend, const Gains& gains, double tail) {
-  const SceneFile& file = scene->file;
+Flight fly(const ScenePointer& scene, const SceneFile& file, const Backend& asked,
+           const Gains& gains, double tail) {
+  JudgedRollout flown = judged_rollout(
+      asked, file, gains, {.frames_per_second = file.scene.frames_per_second, .tail = tail});
+  if (diverged(flown.flight)) throw Diverged(divergence_message(file.path, asked, flown.flight));
+  const Backend& backend = flown.finer ? *flown.finer : asked;
   Flight flight{scene, std::string(backend.name()), backend.steps()};
-  flight.rollout =
-      rollout(backend, gains, {.frames_per_second = file.scene.frames_per_second, .tail = tail});
-  if (diverged(flight.rollout)) {
-    throw Diverged(divergence_message(file.path, backend, flight.rollout));
-  }
-  flight.sensitivity = bounded_sensitivity(backend, flight.rollout);
+  flight.sensitivity = bounded_sensitivity(backend, flown.flight);
+  flight.rollout = std::move(flown.flight);
   flight.frames = frames_together(std::move(flight.rollout.frame_positions));
   flight.rollout.frame_positions.clear();
   return flight;

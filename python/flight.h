@@ -21,9 +21,10 @@ struct Flight {
   std::string optimization = {};  ///< of a result file, as JSON; empty where no gain was searched
 };
 
-/// Flies at these gains, keeps the scene's frames and those of a `tail` [s], and judges the flight
-/// by a twin. Throws Diverged.
-Flight fly(const ScenePointer& scene, const Backend& backend, const Gains& gains, double tail);
+/// Flies at these gains, keeps the scene's frames and those of a `tail` [s], and judges the flight.
+/// `file` is the scene's, with the caller's stop. Throws Diverged.
+Flight fly(const ScenePointer& scene, const SceneFile& file, const Backend& asked,
+           const Gains& gains, double tail);
 
 /// A flight that diverged, at which step and why.
 class Diverged : public std::runtime_error {

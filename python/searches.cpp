@@ -58,7 +58,7 @@ FlightPointer simulate(const ScenePointer& scene, const std::vector<double>& alp
       [&] {
         const auto engine = make_backend_for_gain(backend, file, gains.largest());
         require_short_tail(*engine, tail);
-        flight = std::make_shared<Flight>(fly(scene, *engine, gains, tail));
+        flight = std::make_shared<Flight>(fly(scene, file, *engine, gains, tail));
       },
       stop);
   return flight;
@@ -78,7 +78,7 @@ FlightPointer optimize(const ScenePointer& scene, const std::string& backend,
         auto engine = make_backend(backend, file);
         require_short_tail(*engine, tail);
         const SearchAnswer answer = search(file, std::move(engine), options);
-        flight = std::make_shared<Flight>(fly(scene, *answer.backend, answer.gains, tail));
+        flight = std::make_shared<Flight>(fly(scene, file, *answer.backend, answer.gains, tail));
         flight->optimization = optimization_to_json(answer.how);
       },
       stop);

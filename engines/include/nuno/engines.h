@@ -106,7 +106,7 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
 std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& file, double share);
 
 /// A rollout, and the engine that flew it.
-struct ResolvedRollout {
+struct JudgedRollout {
   std::unique_ptr<Backend> finer;  ///< null: the one that was asked
   Rollout flight;
 };
@@ -114,8 +114,8 @@ struct ResolvedRollout {
 /// A rollout of the scene on its backend, with its step error, unless that would take hours. Where
 /// it diverges, and the scene leaves the step to the engine, it is flown at a quarter and at a
 /// sixteenth of the step.
-ResolvedRollout resolved_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
-                                 const RolloutOptions& options = {});
+JudgedRollout judged_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
+                             const RolloutOptions& options = {});
 
 /// Makes the engine called `name` for the scene's problem corrected elsewhere, see refine.h; `name`
 /// and `file` must outlive it.
