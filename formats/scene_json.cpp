@@ -448,7 +448,8 @@ std::string to_json(const SheetInput& sheet) { return json_of(AnyScene(sheet)).d
 
 SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
                        const std::string& source) {
-  return with_meshes(std::move(scene), initial, read_mesh(initial), target, read_mesh(target),
+  Mesh start = read_mesh(initial);  // first, so that its faults are told first
+  return with_meshes(std::move(scene), initial, std::move(start), target, read_mesh(target),
                      source);
 }
 

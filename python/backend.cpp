@@ -110,14 +110,14 @@ std::vector<ErrorSample> samples_of(HeldBackend& self, const Array& alphas) {
 }
 
 py::tuple gradients_of(HeldBackend& self, const Array& alphas) {
-  std::vector<double> errors, slopes;
+  std::vector<double> errors, gradients;
   for (const ErrorSample& sample : samples_of(self, alphas)) {
     errors.push_back(sample.error);
-    for (const ErrorSample::Derivative& by : sample.derivatives) slopes.push_back(by.error);
+    for (const ErrorSample::Derivative& by : sample.derivatives) gradients.push_back(by.error);
   }
   const auto count = static_cast<py::ssize_t>(errors.size());
   const std::vector<py::ssize_t> shape(alphas.shape(), alphas.shape() + alphas.ndim());
-  return py::make_tuple(owned(std::move(errors), {count}), owned(std::move(slopes), shape));
+  return py::make_tuple(owned(std::move(errors), {count}), owned(std::move(gradients), shape));
 }
 
 py::tuple residuals_of(HeldBackend& self, const Array& alphas) {

@@ -24,11 +24,16 @@ using namespace pybind11::literals;
 class FlownOn : public Backend {
  public:
   explicit FlownOn(const Flight& flight)
-      : Backend(named(flight.backend), flight.scene->file.problem, flight.steps) {}
+      : Backend(named(flight.backend), flown_problem(flight), flight.steps) {}
 
  private:
   static std::string_view named(const std::string& name) {
     return *std::ranges::find(backend_names, name);
+  }
+  static Problem flown_problem(const Flight& flight) {
+    Problem problem = flight.scene->file.problem;
+    problem.reference_correction = flight.reference_correction;
+    return problem;
   }
   std::unique_ptr<Simulation> do_start(const Points&, const Points&) const override {
     std::abort();
@@ -116,12 +121,15 @@ py::tuple state_of(const Flight& flight) {
   const auto numbers = [](const std::vector<double>& from) {
     return py::array_t<double>(static_cast<py::ssize_t>(from.size()), from.data());
   };
+  py::list correction;
+  for (const Points& shape : flight.reference_correction) correction.append(copy(shape));
   return py::make_tuple(
       flight.scene, flight.backend, flight.steps, rollout.gains.groups(),
       copy(rollout.launch_velocity), copy(rollout.final), copy(rollout.final_velocity),
       py::make_tuple(rollout.error.mean, rollout.error.max, rollout.error.centroid),
       rollout.control_effort, rollout.max_strain, numbers(rollout.frame_times),
-      numbers(flight.frames), flight.sensitivity, flight.optimization, rollout.step_error);
+      numbers(flight.frames), flight.sensitivity, flight.optimization, rollout.step_error,
+      correction);
 }
 
 Flight flight_of_state(const py::tuple& state) {
@@ -148,6 +156,9 @@ Flight flight_of_state(const py::tuple& state) {
   flight.sensitivity = state[12].cast<double>();
   flight.optimization = state[13].cast<std::string>();
   rollout.step_error = state[14].cast<std::optional<double>>();
+  for (const py::handle shape : state[15].cast<py::list>()) {
+    flight.reference_correction.push_back(points_of(shape.cast<Array>(), 0, 0, "a pickled result"));
+  }
   return flight;
 }
 
@@ -203,6 +214,17 @@ void add_numbers(Class& result) {
   result.def_property_readonly(
       "fragility", [](const Flight& self) { return fragility(self.sensitivity); },
       "The word of warning for a fragile flight; empty for a calm one.");
+  result.def_property_readonly(
+      "reference_correction",
+      [](const py::object& self) -> py::object {
+        const auto& shapes = self.cast<const Flight&>().reference_correction;
+        if (shapes.empty()) return py::none();
+        py::list views;
+        for (const Points& shape : shapes) views.append(view(shape, self));
+        return views;
+      },
+      "What moved the reference of a refined flight [m]: four times (particles, dimension), for "
+      "`simulate`; None of one that was not refined.");
   result.def_readonly("optimization_json", &Flight::optimization,
                       "How the gain was searched, as JSON; empty where none was.");
 }
@@ -243,6 +265,7 @@ Flight fly(const ScenePointer& scene, const SceneFile& file, const Backend& aske
   const Backend& backend = flown.finer ? *flown.finer : asked;
   Flight flight{scene, std::string(backend.name()), backend.steps()};
   flight.sensitivity = bounded_sensitivity(backend, flown.flight);
+  flight.reference_correction = backend.problem().reference_correction;
   flight.rollout = std::move(flown.flight);
   flight.frames = frames_together(std::move(flight.rollout.frame_positions));
   flight.rollout.frame_positions.clear();

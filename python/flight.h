@@ -18,6 +18,7 @@ struct Flight {
   Rollout rollout = {};             ///< without positions of its frames
   std::vector<double> frames = {};  ///< [frames × particles × dimension], m
   double sensitivity = 0;
+  std::vector<Points> reference_correction = {};  ///< that it was flown with, see Problem
   std::string optimization = {};  ///< of a result file, as JSON; empty where no gain was searched
 };
 

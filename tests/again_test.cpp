@@ -138,7 +138,8 @@ end_header
       R"({"nuno_scene": 1, "arrival_time": 1, "initial": "start.ply", "target": "start.ply"})");
   const fs::path scene = in_folder("scene.json");
   const fs::path result = result_of({"simulate", scene, "--alpha", "0.5"}, "result.json");
-  EXPECT_EQ(read_json(result)["input"]["file_vertices"].size(), 6u) << "not welded: no test";
+  EXPECT_EQ(read_json(result)["input"]["initial"]["file_vertices"].size(), 6u)
+      << "not welded: no test";
   for (const char* kind : {".glb", ".usda", ".pc2"}) {
     const std::string of_scene = std::string("scene") + kind, again = std::string("again") + kind;
     result_of({"simulate", scene, "--alpha", "0.5", "--tail", "0.5"}, of_scene);
@@ -208,13 +209,13 @@ TEST_F(Again, RefusesASheetThatIsNotWhole) {
   };
   write_text(in_folder("whole.json"), whole.dump());
   EXPECT_EQ(nuno({"simulate", in_folder("whole.json")}).status, 0) << "a scene of its own";
-  expect("/faces", 1, "/faces", "1", "is not a list");
-  expect("/faces/3", {0, 1, 1e6}, "/faces/3/2", "1000000", "is not a whole number within 0 …");
-  expect("/faces/3", {0, 1}, "/faces/3", "2 corners", "are not 3 or 4");
-  expect("/initial", {{0, 0}, {1, 1}}, "/initial", "[[0.0,0.0]",
-         "is not a list of points [x, y, z]");
-  expect("/target", {{0, 0, 1}, {1, 1, 1}}, "/target", "2 vertices", "of /initial");
-  expect("/file_vertices", {-1}, "/file_vertices/0", "-1", "is not a whole number");
+  expect("/initial/faces", 1, "/initial/faces", "1", "is not a list of faces");
+  expect("/initial/faces/3", {0, 1, 1e6}, "/initial/faces/3", "1000000",
+         "is not a whole number within 0 …");
+  expect("/initial/faces/3", {0, 1}, "/faces/3", "2 corners", "are not 3 or 4");
+  expect("/initial/vertices", {{0, 0}, {1, 1}}, "/initial/vertices/0", "2 numbers", "are not 3");
+  expect("/target/vertices", {{0, 0, 1}, {1, 1, 1}}, "/target", "2 vertices", "of /initial");
+  expect("/initial/file_vertices", {-1}, "/initial/file_vertices", "-1", "is not a whole number");
 }
 
 }  // namespace

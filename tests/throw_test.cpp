@@ -127,9 +127,10 @@ TEST_F(Throw, ComesNearerRefined) {
   EXPECT_LT(refined["error"]["mean"], 0.5 * alone["error"]["mean"].get<double>());
   EXPECT_EQ(told["jacobians"], 0);
   EXPECT_GT(told["rollouts"], 1);
-  ASSERT_EQ(told["reference_correction"].size(), 4u);
-  EXPECT_EQ(told["reference_correction"][0].size(), refined["final"].size());
-  EXPECT_EQ(told["reference_correction"][0][0].size(), 3u);
+  const Json& correction = refined["reference_correction"];
+  ASSERT_EQ(correction.size(), 4u);
+  EXPECT_EQ(correction[0].size(), refined["final"].size());
+  EXPECT_EQ(correction[0][0].size(), 3u);
 }
 
 TEST_F(Throw, SettlesWhereItIsAskedTo) {

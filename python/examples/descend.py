@@ -20,8 +20,8 @@ single = nuno.optimize(scene)
 
 def error_and_slope(x):
     alphas = np.exp(x)
-    errors, slopes = backend.gradients([alphas])  # one flight, two gains
-    return errors[0], alphas * slopes[0]
+    errors, gradients = backend.gradients([alphas])  # one flight, two gains
+    return errors[0], alphas * gradients[0]
 
 
 start = np.log([single.alpha, single.alpha])

@@ -26,7 +26,6 @@ from .searches import (
     compare,
     optimization_of,
     optimize,
-    refinement_of,
     simulate,
     throw,
 )
@@ -49,7 +48,6 @@ __all__ = [
     "optimization_of",
     "optimize",
     "read_scene",
-    "refinement_of",
     "simulate",
     "throw",
     "throw_scene",

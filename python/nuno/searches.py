@@ -65,7 +65,7 @@ def simulate(
     `alpha` is the gain of the shape control [N/m], >= 0; 0 is launch only; several are gains by
     group of modes, from the longest waves to the rest. `tail` [s] is free flight after the arrival,
     whose frames are kept as well. `reference_correction` [m] is what `optimize` with `refine` found:
-    (4, particles, dimension), see `refinement_of`.
+    (4, particles, dimension), the `reference_correction` of its result.
 
     Raises InputError, and DivergedError.
     """
@@ -160,12 +160,6 @@ def optimization_of(result: Result) -> dict[str, Any]:
     """How the gain of a result was searched, as a result file says it; empty where none was."""
     text = result.optimization_json
     return dict(json.loads(text)) if text else {}
-
-
-def refinement_of(result: Result) -> npt.NDArray[np.float64] | None:
-    """The reference correction of a refined result [m]: (4, particles, dimension), or None."""
-    refinement = optimization_of(result).get("refinement")
-    return None if refinement is None else np.array(refinement["reference_correction"])
 
 
 def arrays_of(curve: dict[str, Any]) -> dict[str, Any]:

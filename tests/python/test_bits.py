@@ -101,7 +101,7 @@ class Bits(unittest.TestCase):
         damped = {**fields, "reference": "morph", "damping_ratio": 0.7}
         refined = nuno.optimize(nuno.make_scene(damped), refine=True)
         again = nuno.simulate(
-            refined.scene, refined.alpha, reference_correction=nuno.refinement_of(refined)
+            refined.scene, refined.alpha, reference_correction=refined.reference_correction
         )
         np.testing.assert_array_equal(again.final, refined.final)
         self.assertNotEqual(again.error, nuno.simulate(refined.scene, refined.alpha).error)
