@@ -13,6 +13,7 @@ if(NOT CMAKE_SCRIPT_MODE_FILE)
       get_filename_component(input "${file}" ABSOLUTE)
       get_filename_component(name "${file}" NAME)
       string(MAKE_C_IDENTIFIER "${name}" name)
+      string(TOLOWER "${name}" name)
       set(output "${folder}/embedded/${name}.cpp")
       file(
         CONFIGURE

@@ -189,6 +189,7 @@ Drawing draw_pareto_front(const std::vector<ParetoCurve>& curves, double cloth_l
                        percent * std::max(range.launch_only, 2 * range.least) * 1.4,
                        Scale::logarithmic};
   std::vector<std::string> backends;
+  backends.reserve(curves.size());
   for (const ParetoCurve& curve : curves) backends.push_back(curve.backend);
 
   Drawing drawing({options.width, options.height}, options.title + ". " + options.subtitle);

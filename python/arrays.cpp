@@ -66,7 +66,7 @@ py::array owned(std::vector<double> numbers, std::vector<py::ssize_t> shape) {
   const double* data = kept->data();
   const py::capsule owner(kept.get(),
                           [](void* held) { delete static_cast<std::vector<double>*>(held); });
-  kept.release();
+  static_cast<void>(kept.release());  // the capsule's now
   return py::array_t<double>(std::move(shape), data, owner);
 }
 

@@ -55,7 +55,7 @@ class Work {
 
 }  // namespace
 
-void without_lock(const std::function<void()>& work, std::stop_source stop) {
+void without_lock(const std::function<void()>& work, const std::stop_source& stop) {
   if (!in_main_thread()) {
     const py::gil_scoped_release unlocked;
     work();

@@ -173,7 +173,7 @@ void add_scenes(py::module_& module) {
       "text"_a, "source"_a, "initial"_a, "target"_a, "faces"_a,
       "A scene from the JSON text of its fields, and its shapes.");
   py::class_<ThrowRequest>(module, "ThrowRequest", "What is asked of a throw.")
-      .def(py::init([](double time, std::optional<std::string> material,
+      .def(py::init([](double time, const std::optional<std::string>& material,
                        std::optional<double> frames_per_second, bool settle) {
              ThrowRequest request;
              request.arrival_time = positive("--time", time);

@@ -2,8 +2,6 @@
 
 #include <array>
 
-#include "embedded/OrbitControls_js.h"
-#include "embedded/TransformControls_js.h"
 #include "embedded/chart_js.h"
 #include "embedded/charts_js.h"
 #include "embedded/client_js.h"
@@ -17,6 +15,7 @@
 #include "embedded/keyboard_js.h"
 #include "embedded/latency_js.h"
 #include "embedded/numbers_js.h"
+#include "embedded/orbitcontrols_js.h"
 #include "embedded/player_js.h"
 #include "embedded/preview_js.h"
 #include "embedded/scene_js.h"
@@ -31,6 +30,7 @@
 #include "embedded/studio_js.h"
 #include "embedded/three_module_js.h"
 #include "embedded/throws_js.h"
+#include "embedded/transformcontrols_js.h"
 #include "embedded/view_js.h"
 
 namespace nuno::studio {
@@ -68,8 +68,8 @@ std::array<PageFile, 29> page_files() {
            {"/view.js", js, view_js},
            // At the places where they look for one another.
            {"/build/three.module.js", js, three_module_js},
-           {"/examples/jsm/controls/OrbitControls.js", js, OrbitControls_js},
-           {"/examples/jsm/controls/TransformControls.js", js, TransformControls_js}}};
+           {"/examples/jsm/controls/OrbitControls.js", js, orbitcontrols_js},
+           {"/examples/jsm/controls/TransformControls.js", js, transformcontrols_js}}};
 }
 
 }  // namespace
