@@ -8,7 +8,9 @@ namespace nuno {
 
 TEST(Example, AThrowIsADampedMorph) {
   const Shapes shapes{arch().initial, arch().target};
-  const AnyScene scene = throw_scene({.arrival_time = 1}, shapes, "arch");
+  ThrowRequest request;
+  request.arrival_time = 1;
+  const AnyScene scene = throw_scene(request, shapes, "arch");
   EXPECT_EQ(scene_of(scene).reference, Reference::morph);
   EXPECT_GT(scene_of(scene).damping_ratio, 0);
 }
