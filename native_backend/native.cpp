@@ -6,6 +6,7 @@
 #include <nuno/rollout.h>
 #include <nuno/shape_control.h>
 
+#include "arrivals.h"
 #include "chain_kernel.h"
 #include "chain_steps.h"
 #include "sheet_backend.h"
@@ -133,17 +134,9 @@ class NativeBackend final : public Backend {
 
   std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const override {
     if (gains.empty()) return {};
-    const auto groups = static_cast<std::size_t>(gains.front().count());
-    const GroupedRollouts flights(*this, gains, gains.front().count());
-    std::vector<Arrival> arrivals = fly_over(flights.gains(), cloth().initial, true);
-    std::vector<ErrorSample> result(gains.size());
-    for (std::size_t i = 0; i < arrivals.size(); ++i) {
-      ErrorSample& sample = result[i / groups];
-      sample.error = arrivals[i].error;
-      sample.residual = std::move(arrivals[i].residual);
-      sample.derivatives.push_back(std::move(arrivals[i].derivative));
-    }
-    return result;
+    const Index groups = gains.front().count();
+    const GroupedRollouts flights(*this, gains, groups);
+    return samples_of(fly_over(flights.gains(), cloth().initial, true), groups);
   }
 
   RolloutJacobian do_jacobian(double gain, const CorrectionDirections& directions) const override {
@@ -231,13 +224,6 @@ class NativeBackend final : public Backend {
     return starts;
   }
 
-  /// How a flight of the kernel arrives, and the derivatives with respect to one of its gains.
-  struct Arrival {
-    double error = 0;
-    Points residual;
-    ErrorSample::Derivative derivative;
-  };
-
   std::vector<Arrival> fly_over(const RolloutGains& gains, const Points& initial,
                                 bool with_derivatives) const {
     const Points velocities = launch(*this);
@@ -255,32 +241,16 @@ class NativeBackend final : public Backend {
 
   void fly_batch(const RolloutGains& gains, const Points& initial, const Points& velocities,
                  bool with_derivatives, std::span<Arrival> arrivals) const {
-    const Points& target = problem().target;
-    const Index size = target.size();
+    const Index size = problem().target.size();
     const Index count = gains.flights();
     std::vector<double> finals(static_cast<std::size_t>(size * count));
     std::vector<double> derivatives(with_derivatives ? finals.size() : 0);
     fly(plan_, ReferenceMotion(problem(), time_step()), initial.data(), velocities.data(), gains,
         finals.data(), with_derivatives ? derivatives.data() : nullptr);
     for (Index lane = 0; lane < count; ++lane) {
-      const Eigen::Map<const Points> final(finals.data() + lane * size, 2, target.cols());
-      Arrival& arrival = arrivals[static_cast<std::size_t>(lane)];
-      if (is_torn(cloth(), final)) {
-        arrival.error = std::numeric_limits<double>::infinity();
-        continue;
-      }
-      arrival.error = arrival_error(final, target).mean;
-      if (!with_derivatives) continue;
-      arrival.residual = final - target;
-      arrival.derivative.residual =
-          Eigen::Map<const Points>(derivatives.data() + lane * size, 2, target.cols());
-      double derivative = 0;
-      for (Index i = 0; i < target.cols(); ++i) {
-        const double distance = arrival.residual.col(i).norm();
-        if (distance > 0)
-          derivative += arrival.residual.col(i).dot(arrival.derivative.residual.col(i)) / distance;
-      }
-      arrival.derivative.error = derivative / static_cast<double>(target.cols());
+      arrivals[static_cast<std::size_t>(lane)] =
+          arrival_of(problem(), finals.data() + lane * size,
+                     with_derivatives ? derivatives.data() + lane * size : nullptr);
     }
   }
 

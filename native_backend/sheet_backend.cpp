@@ -5,6 +5,7 @@
 #include <nuno/parallel.h>
 #include <nuno/rollout.h>
 
+#include "arrivals.h"
 #include "sheet_adjoint.h"
 #include "sheet_kernel.h"
 #include "sheet_plan.h"
@@ -82,16 +83,7 @@ class SheetBackend final : public Backend {
 
   std::vector<ErrorSample> do_error_samples(std::span<const Gains> gains) const override {
     if (gains.empty()) return {};
-    const auto groups = static_cast<std::size_t>(gains.front().count());
-    std::vector<Arrival> arrivals = fly_over(gains, cloth().initial, true);
-    std::vector<ErrorSample> result(gains.size());
-    for (std::size_t i = 0; i < arrivals.size(); ++i) {
-      ErrorSample& sample = result[i / groups];
-      sample.error = arrivals[i].error;
-      sample.residual = std::move(arrivals[i].residual);
-      sample.derivatives.push_back(std::move(arrivals[i].derivative));
-    }
-    return result;
+    return samples_of(fly_over(gains, cloth().initial, true), gains.front().count());
   }
 
   bool do_has_gradient() const override { return true; }
@@ -105,13 +97,6 @@ class SheetBackend final : public Backend {
     }
     return gradient;
   }
-
-  /// How a flight of the kernel arrives, and the derivatives with respect to one of its gains.
-  struct Arrival {
-    double error = 0;
-    Points residual;
-    ErrorSample::Derivative derivative;
-  };
 
   /// A flight for each of the gains; with derivatives, one for each of their groups.
   std::vector<Arrival> fly_over(std::span<const Gains> gains, const Points& initial,
@@ -133,34 +118,11 @@ class SheetBackend final : public Backend {
           with_derivatives ? derivatives.data() : nullptr);
       for (Index lane = 0; lane < here.flights(); ++lane) {
         arrivals[static_cast<std::size_t>(first + lane)] =
-            arrival_of(finals.data() + lane * size,
+            arrival_of(problem(), finals.data() + lane * size,
                        with_derivatives ? derivatives.data() + lane * size : nullptr);
       }
     });
     return arrivals;
-  }
-
-  Arrival arrival_of(const double* finals, const double* derivatives) const {
-    const Points& target = problem().target;
-    const Eigen::Map<const Points> final(finals, 3, target.cols());
-    Arrival arrival;
-    if (is_torn(cloth(), final)) {
-      arrival.error = std::numeric_limits<double>::infinity();
-      return arrival;
-    }
-    arrival.error = arrival_error(final, target).mean;
-    if (derivatives == nullptr) return arrival;
-    arrival.residual = final - target;
-    arrival.derivative.residual = Eigen::Map<const Points>(derivatives, 3, target.cols());
-    double sum = 0;
-    for (Index i = 0; i < target.cols(); ++i) {
-      const double distance = arrival.residual.col(i).norm();
-      if (distance > 0) {
-        sum += arrival.residual.col(i).dot(arrival.derivative.residual.col(i)) / distance;
-      }
-    }
-    arrival.derivative.error = sum / static_cast<double>(target.cols());
-    return arrival;
   }
 
   SheetPlan plan_;
