@@ -333,11 +333,6 @@ SheetInput read_whole_sheet(const Json& json, const std::string& source) {
 
 }  // namespace
 
-const Scene& scene_of(const AnyScene& scene) {
-  if (const auto* chain = std::get_if<ChainScene>(&scene)) return *chain;
-  return std::get<SheetInput>(scene).scene;
-}
-
 AnyScene scene_from(const Json& json, const std::string& source, const std::string& folder) {
   if (names_meshes(json)) return read_sheet_of_files(json, source, folder);
   if (has_meshes(json)) return read_whole_sheet(json, source);
@@ -380,24 +375,6 @@ AnyScene parse_scene_of(const Shapes& shapes, const std::string& text, const std
     return with_shapes(std::move(scene), shapes, source);
   };
   return shapes.faces.empty() ? read(ChainScene()) : read(SheetScene());
-}
-
-ChainScene with_shapes(ChainScene scene, const Shapes& shapes, const std::string& source) {
-  scene.initial = shapes.initial;
-  scene.target = shapes.target;
-  validate(scene, source);
-  return scene;
-}
-
-SheetInput with_shapes(SheetScene scene, const Shapes& shapes, const std::string& source) {
-  scene.initial = shapes.initial;
-  scene.target = shapes.target;
-  scene.faces = shapes.faces;
-  validate(scene, source);
-  Mesh mesh;
-  mesh.vertices = shapes.initial;
-  mesh.faces = shapes.faces;
-  return {std::move(scene), std::move(mesh)};
 }
 
 std::string fields_to_json(const AnyScene& any) {
@@ -445,31 +422,5 @@ Json json_of(const AnyScene& any) {
 std::string to_json(const ChainScene& scene) { return json_of(AnyScene(scene)).dump(1); }
 
 std::string to_json(const SheetInput& sheet) { return json_of(AnyScene(sheet)).dump(); }
-
-SheetInput with_meshes(SheetScene scene, const std::string& initial, const std::string& target,
-                       const std::string& source) {
-  Mesh start = read_mesh(initial);  // first, so that its faults are told first
-  return with_meshes(std::move(scene), initial, std::move(start), target, read_mesh(target),
-                     source);
-}
-
-SheetInput with_meshes(SheetScene scene, const std::string& initial, Mesh start,
-                       const std::string& target, Mesh end, const std::string& source) {
-  weld_seams(start, end);
-  require_same_faces(start, initial, end, target);
-  cut_polygons(start);
-  require_sheet(start, initial);
-  require_pose(end, target);
-  for (const std::string& remark : end.remarks) {
-    if (std::ranges::find(start.remarks, remark) == start.remarks.end()) {
-      start.remarks.push_back(remark);
-    }
-  }
-  scene.initial = start.vertices;
-  scene.target = end.vertices;
-  scene.faces = start.faces;
-  validate(scene, source);
-  return {std::move(scene), std::move(start)};
-}
 
 }  // namespace nuno
