@@ -11,14 +11,13 @@
 #include <numbers>
 
 #include "engines.h"
+#include "gains_by_group.h"
 #include "scene_library.h"
 
 namespace nuno {
 namespace {
 
 constexpr Index N = 32;
-
-Gains by_group(std::vector<double> groups) { return Gains::of_groups(groups); }
 
 /// A throw under the paper's hold, and one under the damped morph.
 Problem hold_problem() { return make_problem(scene_library::straight_to_s()); }
@@ -199,26 +198,7 @@ TEST(GroupedRollouts, WithEqualGainsArrivesLikeOneGain) {
 TEST(GroupedRollouts, KnowsTheDerivativeByEveryGain) {
   for (const Problem& problem : {hold_problem(), morph_problem()}) {
     const auto backend = native::make_backend(problem);
-    for (const Gains& gains : unlike_gains(problem)) {
-      const ErrorSample found = backend->error_samples({&gains, 1}).front();
-      const std::vector<double> groups = gains.groups();
-      ASSERT_EQ(found.derivatives.size(), groups.size());
-      for (std::size_t k = 0; k < groups.size(); ++k) {
-        const double d = 3e-4 * groups[k];
-        std::vector<Gains> around;
-        for (const double steps : {-2, -1, 1, 2}) {
-          std::vector<double> moved = groups;
-          moved[k] += steps * d;
-          around.push_back(by_group(moved));
-        }
-        const std::vector<double> e = backend->errors(around);
-        const double difference = (e[0] - 8 * e[1] + 8 * e[2] - e[3]) / (12 * d);
-        // Fourth-order differences over 3e-4: at 1e-3 the curviest is 2e-5 off, at 1e-4 rounding is
-        // 1e-6 of the slightest.
-        EXPECT_NEAR(found.derivatives[k].error / difference, 1, 1e-6)
-            << k << " of " << groups.size();
-      }
-    }
+    for (const Gains& gains : unlike_gains(problem)) expect_derivatives(*backend, gains);
   }
 }
 

@@ -285,6 +285,13 @@ TEST_F(Result, TellsHowFarItMovesWithHalfOfTheStepAndWhichResolvesIt) {
   EXPECT_EQ(calm_words.find("coarse"), std::string::npos) << calm_words;
 }
 
+TEST_F(Result, JudgesTheStepOfARefinedFlightByItsOwnReference) {
+  // Against the reference without its correction it would be some per cent.
+  const Json refined = simulated({"optimize", scene("s-curve-32"), "--refine"});
+  ASSERT_TRUE(refined["optimization"].contains("refinement"));
+  EXPECT_LT(refined["step_error"], 2e-3);
+}
+
 TEST_F(Result, OfARolloutThatDivergesIsExitStatusThreeAndNoFile) {
   const std::string vee = in_folder("vee.json");
   Json scene = vee_scene;

@@ -16,6 +16,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "gains_by_group.h"
 #include "sheets.h"
 
 namespace nuno {
@@ -24,8 +25,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using std::numbers::pi;
-
-Gains by_group(std::vector<double> groups) { return Gains::of_groups(groups); }
 
 /// A throw of quads and triangles under damped control, and one of a disc under undamped.
 Problem damped_problem() { return make_problem(throw_scene(false)); }
@@ -237,24 +236,7 @@ TEST(SheetGroupedRollouts, WithEqualGainsArriveLikeOneGain) {
 TEST(SheetGroupedRollouts, KnowTheDerivativeByEveryGain) {
   for (const Problem& problem : {undamped_problem(), damped_problem()}) {
     const auto backend = native::make_backend(problem);
-    for (const Gains& gains : unlike_gains(problem)) {
-      const ErrorSample found = backend->error_samples({&gains, 1}).front();
-      const std::vector<double> groups = gains.groups();
-      ASSERT_EQ(found.derivatives.size(), groups.size());
-      for (std::size_t k = 0; k < groups.size(); ++k) {
-        const double d = 3e-4 * groups[k];
-        std::vector<Gains> around;
-        for (const double steps : {-2, -1, 1, 2}) {
-          std::vector<double> moved = groups;
-          moved[k] += steps * d;
-          around.push_back(by_group(moved));
-        }
-        const std::vector<double> e = backend->errors(around);
-        const double difference = (e[0] - 8 * e[1] + 8 * e[2] - e[3]) / (12 * d);
-        EXPECT_NEAR(found.derivatives[k].error / difference, 1, 1e-6)
-            << k << " of " << groups.size();
-      }
-    }
+    for (const Gains& gains : unlike_gains(problem)) expect_derivatives(*backend, gains);
   }
 }
 
