@@ -20,7 +20,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kinds = {
     {"\x89PNG"sv, "a PNG picture"},
     {"\xff\xd8\xff"sv, "a JPEG picture"},
     {"%PDF"sv, "a PDF"},
-    {"glTF"sv, "binary glTF: its name is to end in .glb"},
+    {"glTF"sv, "binary glTF: a mesh, whose name ends in .glb"},
     {"BLENDER"sv, "a file of Blender's own: export from it"},
 }};
 
