@@ -1,53 +1,36 @@
 // Sheets in the studio, in a real browser with real pointer input: open, drag, look around, save.
 
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before, test } from 'node:test';
-import { chromium } from 'playwright-core';
+import { patience, start_studio } from './studio_server.mjs';
 
-const program = process.env.NUNO_PROGRAM;
 const sheets = path.join(process.env.NUNO_SCENES, 'sheets');
 const folder = mkdtempSync(path.join(tmpdir(), 'nuno-sheet-test-'));
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-const patience = 120_000; // for a machine that has other work
-let server, browser, page, url;
+let studio, page;
 const page_errors = [];
 
 before(async () => {
-  server = spawn(program, ['studio', '--no-open', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
-  url = await new Promise((resolve, reject) => {
-    let said = '';
-    server.stdout.on('data', (data) => {
-      said += data;
-      const found = said.match(/http:\/\/127\.0\.0\.1:\d+\//);
-      if (found) resolve(found[0]);
-    });
-    server.on('exit', () => reject(new Error(`the studio ended: ${said}`)));
-  });
-  browser = await chromium.launch({
-    executablePath: '/usr/bin/chromium',
-    // WebGL without a graphics card.
-    args: ['--headless', '--no-sandbox', '--disable-gpu', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-background-networking'],
-  });
+  // WebGL without a graphics card.
+  studio = await start_studio(['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader']);
   page = await new_page({ viewport: { width: 1280, height: 800 } });
 });
 
 after(async () => {
-  await browser?.close();
-  server?.kill('SIGINT');
+  await studio?.end();
   rmSync(folder, { recursive: true, force: true });
 });
 
 async function new_page(options) {
-  const context = await browser.newContext({ acceptDownloads: true, ...options });
+  const context = await studio.browser.newContext({ acceptDownloads: true, ...options });
   const made = await context.newPage();
   made.setDefaultTimeout(patience);
   made.on('pageerror', (error) => page_errors.push(error.message));
-  await made.goto(url);
+  await made.goto(studio.url);
   await settled(made);
   return made;
 }

@@ -1,55 +1,39 @@
 // The studio in a real browser with real pointer input: one page for all the tests of a file.
 
 import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before } from 'node:test';
-import { chromium } from 'playwright-core';
+import { patience, program, start_studio } from './studio_server.mjs';
 
-export const program = process.env.NUNO_PROGRAM;
+export { patience, program };
 export const folder = mkdtempSync(path.join(tmpdir(), 'nuno-studio-test-'));
-export const patience = 120_000; // for a machine that has other work
 export let page;
-let server, browser, url;
+let studio;
 export const page_errors = [];
 
 before(async () => {
-  server = spawn(program, ['studio', '--no-open', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
-  url = await new Promise((resolve, reject) => {
-    let said = '';
-    server.stdout.on('data', (data) => {
-      said += data;
-      const found = said.match(/http:\/\/127\.0\.0\.1:\d+\//);
-      if (found) resolve(found[0]);
-    });
-    server.on('exit', () => reject(new Error(`the studio ended: ${said}`)));
-  });
-  browser = await chromium.launch({
-    executablePath: '/usr/bin/chromium',
-    args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-background-networking'],
-  });
+  studio = await start_studio();
   page = await new_page({ viewport: { width: 1280, height: 800 } });
 });
 
 after(async () => {
-  await browser?.close();
-  server?.kill('SIGINT');
+  await studio?.end();
   rmSync(folder, { recursive: true, force: true });
 });
 
 export async function new_page(options) {
-  const context = await browser.newContext({ acceptDownloads: true, ...options });
+  const context = await studio.browser.newContext({ acceptDownloads: true, ...options });
   const made = await context.newPage();
   made.setDefaultTimeout(patience);
   made.on('pageerror', (error) => page_errors.push(error.message));
-  await made.goto(url);
+  await made.goto(studio.url);
   await settled(made);
   // The paper's control, and not landed exactly: a link that does not ask for it.
   const paper = await made.evaluate(() => ({ ...nuno_studio.app.doc.scene, reference: 'hold', damping_ratio: 0 }));
   await made.goto('about:blank');
-  await made.goto(`${url}#scene=${Buffer.from(JSON.stringify(paper)).toString('base64url')}`);
+  await made.goto(`${studio.url}#scene=${Buffer.from(JSON.stringify(paper)).toString('base64url')}`);
   await settled(made);
   return made;
 }

@@ -1,0 +1,30 @@
+// A studio of one's own, and a browser before it.
+
+import { spawn } from 'node:child_process';
+import { chromium } from 'playwright-core';
+
+export const program = process.env.NUNO_PROGRAM;
+export const patience = 120_000; // for a machine that has other work
+
+// `more` are arguments for the browser.
+export async function start_studio(more = []) {
+  const server = spawn(program, ['studio', '--no-open', '--port', '0'], { stdio: ['ignore', 'pipe', 'inherit'] });
+  const url = await new Promise((resolve, reject) => {
+    let said = '';
+    server.stdout.on('data', (data) => {
+      said += data;
+      const found = said.match(/http:\/\/127\.0\.0\.1:\d+\//);
+      if (found) resolve(found[0]);
+    });
+    server.on('exit', () => reject(new Error(`the studio ended: ${said}`)));
+  });
+  const browser = await chromium.launch({
+    executablePath: '/usr/bin/chromium',
+    args: ['--headless', '--no-sandbox', '--disable-gpu', '--disable-background-networking', ...more],
+  });
+  const end = async () => {
+    await browser.close();
+    server.kill('SIGINT');
+  };
+  return { url, browser, end };
+}
