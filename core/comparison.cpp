@@ -19,8 +19,8 @@ std::vector<double> gains_of_curve(const Backend& first, const Backend& second) 
   const GlobalSearchOptions range;
   const double scale = objective(first).gain_scale;
   const double low = range.smallest_gain * scale;
-  const double high =
-      std::max(2 * low, std::min(objective(first).largest_gain, objective(second).largest_gain));
+  const double high = std::max(
+      2 * low, std::min(gain_range(objective(first)).calm, gain_range(objective(second)).calm));
   std::vector<double> gains = {0};
   for (int i = 0; i < points_of_curve; ++i) {
     gains.push_back(low * std::pow(high / low, i / (points_of_curve - 1.0)));

@@ -220,7 +220,7 @@ JointObjective joint_objective(const Backend& backend) {
   }
   const Objective range = objective(backend);
   result.gain_scale = range.gain_scale;
-  result.largest_gain = range.largest_gain;
+  result.largest_gain = gain_range(range).calm;
   result.negligible = range.negligible;
   return result;
 }

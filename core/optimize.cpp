@@ -1,5 +1,7 @@
 #include <nuno/optimize.h>
 
+#include "gain_range.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -62,17 +64,10 @@ Objective objective(const Backend& backend) {
   }
   const Problem& problem = backend.problem();
   result.gain_scale = problem.cloth().particle_mass / (problem.arrival_time * problem.arrival_time);
-  // An undamped control of 100 gain scales swings 1½ times until arrival. Beyond, E(α) at the
-  // default step and at half of it part by 1e-2 of the cloth's length and more.
-  constexpr double most_undamped = 100;
   result.largest_gain = backend.largest_gain();
-  result.why_largest = "the time step resolves no larger one; a shorter step does";
-  result.negligible = 1e-10 * problem.cloth().size;
-  if (problem.damping_ratio < 0.5 && most_undamped * result.gain_scale < result.largest_gain) {
-    result.largest_gain = most_undamped * result.gain_scale;
-    result.why_largest =
-        "beyond, E of a control without damping is noise; \"damping_ratio\": 0.7 takes it farther";
-  }
+  result.damping_ratio = problem.damping_ratio;
+  result.size = problem.cloth().size;
+  result.negligible = 1e-10 * result.size;
   return result;
 }
 
@@ -138,23 +133,32 @@ OptimizeSummary steepest_descent(const Objective& objective,
 
 namespace {
 
-/// The gains of a scan: 0, then from the smallest to the largest that make sense, evenly spaced in
+/// The gains of a scan up to `largest`: 0, then from the smallest that makes sense evenly spaced in
 /// log(1 + φ/6), where φ = √(α/gain scale) is the phase [rad] that control turns through until
-/// arrival: E(α) swings with φ, and ever less sharply.
+/// arrival: E(α) swings with φ, and where control is damped ever less sharply. Where it is not,
+/// they end at φ = 10, and others follow `apart` [rad].
 std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOptions& options,
-                               Index count) {
+                               double largest, Index count, double apart) {
   constexpr double knee = 6;
   const auto place = [](double gain) { return std::log1p(std::sqrt(gain) / knee); };
   const double first = options.smallest_gain;
-  const double last = std::max(
-      2 * first, std::min(options.largest_gain, objective.largest_gain / objective.gain_scale));
+  const double last = std::max(2 * first, largest / objective.gain_scale);
+  const double bend = swings(objective) ? std::min(last, calm_gain_scales) : last;
   std::vector<double> gains = {0};
   for (Index i = 0; i + 2 < count; ++i) {
     const double along = static_cast<double>(i) / static_cast<double>(count - 2);
-    const double phase = knee * std::expm1(std::lerp(place(first), place(last), along));
+    const double phase = knee * std::expm1(std::lerp(place(first), place(bend), along));
     gains.push_back(objective.gain_scale * phase * phase);
   }
-  gains.push_back(objective.gain_scale * last);
+  gains.push_back(objective.gain_scale * bend);
+  // A cubic through samples is off by the fourth power of their distance, and the swings fall by
+  // e^(−ζφ).
+  const auto next = [&](double phase) {
+    return phase + apart * std::exp(0.25 * objective.damping_ratio * phase);
+  };
+  for (double phase = next(std::sqrt(bend)); phase * phase <= last; phase = next(phase)) {
+    gains.push_back(objective.gain_scale * phase * phase);
+  }
   return gains;
 }
 
@@ -163,7 +167,8 @@ std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOpt
 /// One gain on the axis u = √α, along which the arrival swings evenly.
 struct Knot {
   double u = 0;
-  ErrorSample sample;
+  double speed = 0;    ///< see swing_speed
+  ErrorSample sample;  ///< of error ∞ where the flight diverged or E is noise
 };
 
 /// Between two knots every particle arrives on a smooth path, taken for the cubic through its ends
@@ -213,18 +218,41 @@ struct Bracket {
   }
 };
 
+/// The gains halfway between knots, which ascend, that are so far apart that a cubic does not know
+/// the arrivals between them.
+std::vector<double> unresolved_gains(const Objective& objective, const std::list<Knot>& knots) {
+  constexpr double farthest = 0.5;  // that the arrival may move from one to the next, over L
+  std::vector<double> gains;
+  for (auto right = std::next(knots.begin()); right != knots.end(); ++right) {
+    const auto left = std::prev(right);
+    const double phase = (right->u - left->u) / std::sqrt(objective.gain_scale);
+    const bool known = std::isfinite(left->sample.error) || std::isfinite(right->sample.error);
+    if (known && phase * std::max(left->speed, right->speed) > farthest) {
+      gains.push_back(std::pow(0.5 * (left->u + right->u), 2));
+    }
+  }
+  return gains;
+}
+
 /// Searches between `gains`, which ascend. Whether it came to an end before the rounds ran out.
 bool search_with_derivatives(const Objective& objective, std::span<const double> gains,
                              const GlobalSearchOptions& options, OptimizeSummary& summary) {
+  const double calm =
+      swings(objective) ? calm_gain_scales * objective.gain_scale : objective.largest_gain;
   double best = std::numeric_limits<double>::infinity();
   const auto sample = [&](std::span<const double> at) {
     std::vector<ErrorSample> samples = objective.samples(at);
     summary.evaluations += static_cast<Index>(at.size());
     std::vector<Knot> knots;
     for (std::size_t i = 0; i < at.size(); ++i) {
-      summary.history.push_back({at[i], samples[i].error});
+      const double speed = swing_speed(objective, at[i], samples[i]);
+      if (at[i] > calm && speed > 1) {
+        samples[i].error = std::numeric_limits<double>::infinity();
+      } else {
+        summary.history.push_back({at[i], samples[i].error});
+      }
       best = std::min(best, samples[i].error);
-      knots.push_back({std::sqrt(at[i]), std::move(samples[i])});
+      knots.push_back({std::sqrt(at[i]), speed, std::move(samples[i])});
     }
     return knots;
   };
@@ -238,9 +266,17 @@ bool search_with_derivatives(const Objective& objective, std::span<const double>
     }
   };
 
-  for (Knot& knot : sample(gains)) {
-    knots.push_back(std::move(knot));
-    if (knots.size() > 1) add_bracket(*std::prev(knots.end(), 2), knots.back(), 0);
+  for (Knot& knot : sample(gains)) knots.push_back(std::move(knot));
+  if (swings(objective)) {
+    for (int halving = 0; halving < 2; ++halving) {
+      std::vector<Knot> between = sample(unresolved_gains(objective, knots));
+      knots.insert(knots.end(), std::make_move_iterator(between.begin()),
+                   std::make_move_iterator(between.end()));
+      knots.sort([](const Knot& a, const Knot& b) { return a.u < b.u; });
+    }
+  }
+  for (auto right = std::next(knots.begin()); right != knots.end(); ++right) {
+    add_bracket(*std::prev(right), *right, 0);
   }
   // Every round goes on in the brackets whose lower bound is least.
   for (Index round = 0; round < options.rounds; ++round) {
@@ -334,20 +370,28 @@ void search_by_values(const Objective& objective, std::span<const double> gains,
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options) {
   const auto start = Clock::now();
   OptimizeSummary summary;
+  double largest = objective.largest_gain;
+  std::string why_largest;
   if (search_warm(objective, options, summary)) {
     summary.reason = "refined the valley of the warm start";
   } else {
-    const Index scan = objective.samples ? options.scan : 3 * options.scan;
-    const std::vector<double> gains = scan_gains(objective, options, scan);
+    const GainRange range = gain_range(objective, options.largest_gain);
+    // Samples tell noise from the rest.
+    largest = objective.samples ? range.largest : range.calm;
+    why_largest = range.why;
+    const auto [scan, apart] =
+        objective.samples ? std::pair(options.scan, 1.0) : std::pair(3 * options.scan, 0.5);
+    const std::vector<double> gains = scan_gains(objective, options, largest, scan, apart);
     bool done = true;
     if (objective.samples) {
       done = search_with_derivatives(objective, gains, options, summary);
     } else {
       search_by_values(objective, gains, options, summary);
     }
+    summary.evaluations += range.evaluations;
     if (!done) summary.status = OptimizeStatus::budget;
     summary.reason = done
-                         ? fmt::format("of {} gains scanned and the valleys between", scan)
+                         ? fmt::format("of {} gains scanned and the valleys between", gains.size())
                          : fmt::format("{} rounds were not enough for all valleys", options.rounds);
   }
   std::ranges::sort(summary.history, {}, &Evaluation::gain);
@@ -355,12 +399,9 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
   summary.gain = best.gain;
   summary.error = best.error;
   // A search by values comes only near an end of its range.
-  summary.at_largest_gain =
-      best.error > objective.negligible &&
-      best.gain >
-          0.999 * std::min(objective.largest_gain, options.largest_gain * objective.gain_scale);
+  summary.at_largest_gain = best.error > objective.negligible && best.gain > 0.999 * largest;
   if (summary.at_largest_gain) {
-    summary.reason += fmt::format("; the best is the largest gain: {}", objective.why_largest);
+    summary.reason += fmt::format("; the best is the largest gain: {}", why_largest);
   }
   summary.seconds = seconds_since(start);
   return summary;

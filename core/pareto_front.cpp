@@ -49,7 +49,7 @@ std::vector<ParetoPoint> pareto_front(const Backend& backend, Index count,
                                       const std::function<void()>& before_rollout) {
   const Objective range = objective(backend);
   const double first = 1e-2 * range.gain_scale;
-  const double last = std::max(2 * first, range.largest_gain);
+  const double last = std::max(2 * first, gain_range(range).calm);
   std::vector<ParetoPoint> all(static_cast<std::size_t>(count) + 1);
   parallel_for(count + 1, [&](Index i) {
     const double along = static_cast<double>(i - 1) / static_cast<double>(count - 1);

@@ -20,17 +20,31 @@ struct Objective {
   std::function<std::vector<ErrorSample>(std::span<const double> gains)> samples;
   /// m/t₀² [N/m]: the gain whose oscillation turns by one radian until arrival.
   double gain_scale = 1;
-  /// Where E(α) ends to make sense [N/m]: gains above are not resolved by the engine's time step
-  /// or, without damping (ζ < ½), pull the cloth through itself so often that E is noise.
+  /// Gains above are not resolved by the engine's time step [N/m].
   double largest_gain = std::numeric_limits<double>::infinity();
-  /// Why it ends there and what takes it farther, for people.
-  std::string why_largest = "the search ends there";
+  /// ζ of the control: E(α) swings with the phase φ = √(α/gain_scale), by e^(−ζφ).
+  double damping_ratio = 1;
+  double size = 1;  ///< L [m]
   /// An error that is as good as none [m], ≥ 0: below, the smallest gain is the best.
   double negligible = 0;
 };
 
 /// The error at arrival of a backend's problem; the backend must outlive it.
 Objective objective(const Backend& backend);
+
+/// The gains from 0 on at which E(α) can be followed.
+struct GainRange {
+  double calm = 0;        ///< up to here [N/m]
+  double largest = 0;     ///< ≥ calm [N/m]; between, noise begins
+  std::string why;        ///< why it ends there and what takes it farther, for people
+  Index evaluations = 0;  ///< that it took to find out
+};
+
+/// Up to `largest` [gain scales], but no farther than the engine's time step resolves. A control of
+/// ζ < ½ pulls the cloth through itself again and again: from 100 gain scales on, eight gains are
+/// tried, and where a radian more of phase moves the arrival by more than the cloth's size, E is
+/// noise.
+GainRange gain_range(const Objective& objective, double largest = 1e5);
 
 struct Evaluation {
   double gain = 0;   ///< α [N/m]
@@ -70,10 +84,12 @@ OptimizeSummary steepest_descent(const Objective& objective,
 
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;  ///< of the scan, in gain scales, > 0
-  double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's largest
-  Index scan = 24;     ///< gains of the scan, 0 among them, ≥ 4; thrice as many by values
-  Index brackets = 8;  ///< refined in a round (by values: valleys in all), ≥ 1
-  Index rounds = 12;   ///< of refinement at most, ≥ 1; by values, a rollout each
+  double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's range
+  /// Gains of the scan, 0 among them, ≥ 4; thrice as many by values. Where control is not damped,
+  /// they end at 100 gain scales and others follow, a radian of phase apart; by values, half of it.
+  Index scan = 24;
+  Index brackets = 8;             ///< refined in a round (by values: valleys in all), ≥ 1
+  Index rounds = 12;              ///< of refinement at most, ≥ 1; by values, a rollout each
   double gain_tolerance = 1e-6;   ///< of √α, relative; a bracket so narrow is done
   double error_tolerance = 1e-6;  ///< relative; done when no bracket predicts so much less
   /// The best gain of a scene that differs little [N/m]: with derivatives, its valley is searched,
