@@ -156,7 +156,9 @@ std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOpt
   const auto next = [&](double phase) {
     return phase + apart * std::exp(0.25 * objective.damping_ratio * phase);
   };
-  for (double phase = next(std::sqrt(bend)); phase * phase <= last; phase = next(phase)) {
+  const double end = std::sqrt(last);
+  for (double phase = std::sqrt(bend); phase < end;) {
+    phase = std::min(next(phase), end);
     gains.push_back(objective.gain_scale * phase * phase);
   }
   return gains;
@@ -221,7 +223,7 @@ struct Bracket {
 /// The gains halfway between knots, which ascend, that are so far apart that a cubic does not know
 /// the arrivals between them.
 std::vector<double> unresolved_gains(const Objective& objective, const std::list<Knot>& knots) {
-  constexpr double farthest = 0.5;  // that the arrival may move from one to the next, over L
+  constexpr double farthest = 0.25;  // that the arrival may move from one to the next, over L
   std::vector<double> gains;
   for (auto right = std::next(knots.begin()); right != knots.end(); ++right) {
     const auto left = std::prev(right);
@@ -268,7 +270,7 @@ bool search_with_derivatives(const Objective& objective, std::span<const double>
 
   for (Knot& knot : sample(gains)) knots.push_back(std::move(knot));
   if (swings(objective)) {
-    for (int halving = 0; halving < 2; ++halving) {
+    for (int halving = 0; halving < 3; ++halving) {
       std::vector<Knot> between = sample(unresolved_gains(objective, knots));
       knots.insert(knots.end(), std::make_move_iterator(between.begin()),
                    std::make_move_iterator(between.end()));
