@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -60,6 +62,30 @@ std::string contents(std::FILE* file, const std::string& name) {
   return text;
 }
 
+/// A comparison that tells how much of the report it is for is done.
+Comparison compare_for(const Request& request, const std::string& scene, const Backend& first,
+                       const Backend& second) {
+  constexpr double usual_rollouts = 330;  // two searches and three curves
+  constexpr double most = 0.95;           // the flights to be looked at follow
+  std::atomic<std::size_t> flown = 0;
+  const auto tell = [&](std::size_t rollouts) {
+    request.turn.check();
+    request.turn.report(
+        std::min(most, static_cast<double>(flown += rollouts) / usual_rollouts));
+  };
+  return compare_engines(scene, first, second,
+                         {.objective_of =
+                              [&](const Backend& backend) {
+                                Objective result = objective(backend);
+                                result.errors = [tell, errors = result.errors](auto gains) {
+                                  tell(gains.size());
+                                  return errors(gains);
+                                };
+                                return result;
+                              },
+                          .before_rollout = [&] { tell(1); }});
+}
+
 }  // namespace
 
 Answer result_answer(const Request& request) {
@@ -103,7 +129,7 @@ Answer report_answer(const Request& request) {
   const auto first = make_backend(one, file), second = make_backend(other, file);
   require_quick(file, *first, request.options);
   require_quick(file, *second, request.options);
-  const Comparison comparison = compare_engines(file.scene.name, *first, *second);
+  const Comparison comparison = compare_for(request, file.scene.name, *first, *second);
   if (comparison.divergence) {
     const auto& [backend, flight] = *comparison.divergence;
     return diverged_answer(file, backend == one ? *first : *second, flight);

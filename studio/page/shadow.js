@@ -18,16 +18,22 @@ export class Shadow {
       new THREE.MeshBasicMaterial({ map: this.texture, transparent: true, depthWrite: false }));
     this.plane.rotation.x = -Math.PI / 2;
     this.plane.renderOrder = -1;
+    this.painted = []; // of what: its faces and shapes
   }
 
   // A square of the ground, about `middle`, `wide` metres.
   lay(middle, ground, wide) {
     this.plane.scale.set(wide, wide, 1);
     this.plane.position.set(middle.x, ground, middle.z);
+    this.painted = [];
   }
 
   // shapes: points of each cloth; opacity: how dark it is, 0 … 1.
   draw(shapes, faces, opacity) {
+    this.plane.material.opacity = opacity;
+    const of = [faces, ...shapes];
+    if (of.length === this.painted.length && of.every((each, i) => each === this.painted[i])) return;
+    this.painted = of;
     const { context } = this;
     const { x, y: ground, z } = this.plane.position, wide = this.plane.scale.x;
     const at = ([px, py, pz]) => {
@@ -50,7 +56,6 @@ export class Shadow {
       }
       context.fill();
     }
-    this.plane.material.opacity = opacity;
     this.texture.needsUpdate = true;
   }
 }
