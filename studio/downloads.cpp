@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <new>
 #include <optional>
@@ -18,6 +19,7 @@
 #include <nuno/comparison.h>
 #include <nuno/conditioning.h>
 #include <nuno/output.h>
+#include <nuno/parallel.h>
 #include <nuno/progress.h>
 #include <nuno/result_file.h>
 #include <nuno/scene_file.h>
@@ -62,6 +64,26 @@ std::string contents(std::FILE* file, const std::string& name) {
   return text;
 }
 
+/// The same objective, which tells how many gains it flies: all of a batch where they fly side by
+/// side, as with derivatives; else one after the other, each of which takes long.
+Objective counted(Objective objective, const std::function<void(std::size_t)>& tell) {
+  objective.errors = [tell, errors = objective.errors,
+                      in_batches = static_cast<bool>(objective.samples)](auto gains) {
+    if (in_batches) {
+      tell(gains.size());
+      return errors(gains);
+    }
+    std::vector<double> result(gains.size());
+    parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
+      const auto at = static_cast<std::size_t>(i);
+      result[at] = errors(gains.subspan(at, 1)).front();
+      tell(1);
+    });
+    return result;
+  };
+  return objective;
+}
+
 /// A comparison that tells how much of the report it is for is done.
 Comparison compare_for(const Request& request, const std::string& scene, const Backend& first,
                        const Backend& second) {
@@ -70,20 +92,12 @@ Comparison compare_for(const Request& request, const std::string& scene, const B
   std::atomic<std::size_t> flown = 0;
   const auto tell = [&](std::size_t rollouts) {
     request.turn.check();
-    request.turn.report(
-        std::min(most, static_cast<double>(flown += rollouts) / usual_rollouts));
+    request.turn.report(std::min(most, static_cast<double>(flown += rollouts) / usual_rollouts));
   };
-  return compare_engines(scene, first, second,
-                         {.objective_of =
-                              [&](const Backend& backend) {
-                                Objective result = objective(backend);
-                                result.errors = [tell, errors = result.errors](auto gains) {
-                                  tell(gains.size());
-                                  return errors(gains);
-                                };
-                                return result;
-                              },
-                          .before_rollout = [&] { tell(1); }});
+  return compare_engines(
+      scene, first, second,
+      {.objective_of = [&](const Backend& backend) { return counted(objective(backend), tell); },
+       .before_rollout = [&] { tell(1); }});
 }
 
 }  // namespace

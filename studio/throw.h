@@ -23,8 +23,8 @@ struct Throw {
   Rollout flight;
 };
 
-/// The frames that a flight keeps: the scene's; or those that the request asks for, to be looked at,
-/// with the control forces and how it goes on after arrival.
+/// The frames that a flight keeps: the scene's; or those that the request asks for, to be looked
+/// at, with the control forces and how it goes on after arrival.
 enum class KeptFrames { of_scene, of_request };
 
 /// The throw at the gain `alpha`, or at the best one where there is none: as `nuno simulate` and

@@ -230,11 +230,11 @@ export class Space {
     this.orbit.update();
   }
 
-  // As large as what may throw a shadow on it.
+  // As large as what may throw a shadow on it, and more.
   lay_ground(box, ground) {
     const size = box.getSize(new THREE.Vector3()), middle = box.getCenter(new THREE.Vector3());
     const wide = Math.max(size.x, size.z, size.y) * 1.6;
-    this.shadow.lay(middle, ground, wide);
+    this.shadow.lay(ground, wide);
     const cell = 10 ** Math.floor(Math.log10(wide / 4));
     const cells = Math.max(2, 2 * Math.ceil(wide / cell / 2));
     if (this.grid) this.scene.remove(this.grid);

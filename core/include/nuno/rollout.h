@@ -36,8 +36,8 @@ struct Rollout {
   /// Of the step that ends at the frame or after it, of the first frame's the first one's; 0 after
   /// arrival [d × N] each, N. Where they are kept.
   std::vector<Points> frame_forces;
-  Index diverged_at_step = 0;           ///< the first step with a bad value
-  std::string reason;                   ///< why it diverged, for people
+  Index diverged_at_step = 0;  ///< the first step with a bad value
+  std::string reason;          ///< why it diverged, for people
 };
 
 /// Launch, then {shape control, step} until arrival, under gains ≥ 0 [N/m]; 0 is launch only.
