@@ -1,13 +1,12 @@
 // Sheets in the studio, in a real browser with real pointer input: open, drag, look around, save.
 
 import assert from 'node:assert/strict';
-import { readFileSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
+import { writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { test } from 'node:test';
-import { becomes, error_of, folder, new_page, open_sheet, page, page_errors, scene_of, settled, sheets } from './sheet_page.mjs';
+import { violations } from './accessibility.mjs';
+import { becomes, error_of, folder, new_page, open_patch, open_sheet, page, page_errors, scene_of, settled, sheets } from './sheet_page.mjs';
 
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const middle_of = (points) => [0, 1, 2].map((k) => points.reduce((sum, point) => sum + point[k], 0) / points.length);
 
 // Where a point of the gizmo is on the page, in shares of its size from the middle.
@@ -50,6 +49,7 @@ test('the gallery has chains and sheets, and a sheet lands on its target', async
 });
 
 test('the gizmo moves, turns and scales the target, and the throw follows', async () => {
+  await open_patch();
   const before_move = (await scene_of()).target.vertices;
   await drag(await gizmo_at([0, 0, 0]), [-60, -40]);
   const moved = (await scene_of()).target.vertices;
@@ -58,7 +58,7 @@ test('the gizmo moves, turns and scales the target, and the throw follows', asyn
   // Moved, and not turned.
   moved.forEach((point, i) => point.forEach((x, k) => assert.ok(Math.abs(x - before_move[i][k] - (to[k] - from[k])) < 1e-5)));
   const end = await page.evaluate(() => nuno_studio.app.results.native.flight.target);
-  assert.ok(Math.abs(middle_of(end)[0] - to[0]) < 1e-5);
+  assert.ok(Math.abs(middle_of(end)[0] - to[0]) < 1e-3); // it is fitted, about its mass centre, by less than a hundredth
   assert.ok((await error_of()) < 1e-2);
 
   await page.keyboard.press('t');
@@ -202,7 +202,7 @@ test('where a sheet passes through itself is said', async () => {
 });
 
 test('a reload keeps the sheet', async () => {
-  await open_sheet('napkin-over-an-edge');
+  await open_patch();
   const text = JSON.stringify(await scene_of());
   await page.reload();
   await settled();
@@ -213,16 +213,14 @@ test('a reload keeps the sheet', async () => {
 test('nothing of the page breaks a rule of axe-core, light and dark, with a mouse and on a phone', async () => {
   for (const options of [{ colorScheme: 'light' }, { colorScheme: 'dark' }, { viewport: { width: 390, height: 844 }, hasTouch: true }]) {
     const other = await new_page(options);
-    const violations = async () => {
-      await other.evaluate(axe);
-      return other.evaluate(async () => (await axe.run()).violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join(' ')}`));
-    };
-    assert.deepEqual(await violations(), []);
+    assert.deepEqual(await violations(other), []);
     await other.click('#first-done');
-    await open_sheet('flag-to-half-pipe', other);
-    assert.deepEqual(await violations(), []);
+    await open_patch(other);
+    assert.deepEqual(await violations(other), []);
+    await other.click('#export summary');
+    assert.deepEqual(await violations(other), []);
     await other.click('#gallery');
-    assert.deepEqual(await violations(), []);
+    assert.deepEqual(await violations(other), []);
     await other.context().close();
   }
 });

@@ -2,12 +2,13 @@
 
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { test } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { becomes, download, error_of, folder, new_page, open_sheet, page, page_errors, scene_of, settled, sheets } from './sheet_page.mjs';
-import { obj_text, square_mesh } from './square_mesh.mjs';
+import { violations } from './accessibility.mjs';
+import { becomes, download, error_of, folder, new_page, open_patch, open_sheet, page, page_errors, scene_of, settled, sheets } from './sheet_page.mjs';
+import { square_mesh } from './square_mesh.mjs';
 
 // Few particles: the page is tested, not the engines.
 const flat = square_mesh(4, (u, v) => [u, 1, v]);
@@ -85,27 +86,19 @@ test('a mesh that is dropped with its morph target is thrown to it', async () =>
 });
 
 test('two poses of a mesh come out as point cache and film', async () => {
-  const files = [['start', flat], ['target', bent]].map(([name, mesh]) => {
-    const file = path.join(folder, `patch-${name}.obj`);
-    writeFileSync(file, obj_text(mesh));
-    return file;
-  });
-  await page.setInputFiles('#file', files);
-  await becomes(page, () => nuno_studio.app.doc.scene.name === 'patch-target');
-  await settled();
+  await open_patch();
   await page.fill('#field-arrival_time', '0.4');
   await page.keyboard.press('Enter');
   await settled();
   const cache = readFileSync(await download(() => export_as('pc2')));
   assert.equal(cache.toString('latin1', 0, 11), 'POINTCACHE2');
-  assert.equal(cache.readInt32LE(16), 16); // points
+  assert.equal(cache.readInt32LE(16), 36); // points
   const frames = cache.readInt32LE(28);
   assert.equal(frames, 25);
   // The last frame is the flight's end.
-  const { final, target } = await page.evaluate(() => nuno_studio.app.results.native.flight);
-  const at = (i, k) => cache.readFloatLE(32 + 4 * (3 * (16 * (frames - 1) + i) + k));
+  const { final } = await page.evaluate(() => nuno_studio.app.results.native.flight);
+  const at = (i, k) => cache.readFloatLE(32 + 4 * (3 * (36 * (frames - 1) + i) + k));
   final.forEach((point, i) => point.forEach((x, k) => assert.ok(Math.abs(at(i, k) - x) < 1e-5)));
-  assert.equal(target.length, 16);
   await settled();
   try {
     execFileSync('sh', ['-c', 'command -v ffmpeg && command -v rsvg-convert'], { stdio: 'ignore' });
@@ -127,21 +120,29 @@ test('a report of both engines says how much of it is made, and shows the sheet 
   assert.ok(shares.length > 0 && shares.every((share, i) => share > 0 && share <= 1 && share >= (shares[i - 1] ?? 0)), `${shares}`);
   await settled();
   assert.ok(await page.isHidden('#making'));
-  const report = await (await page.context().browser().newContext()).newPage();
+  for (const colorScheme of ['dark', 'light']) await look_at_report(file, colorScheme);
+});
+
+async function look_at_report(file, colorScheme) {
+  const report = await (await page.context().browser().newContext({ colorScheme })).newPage();
   report.on('pageerror', (error) => page_errors.push(error.message));
   await report.goto(pathToFileURL(file).href);
   assert.match(await report.textContent('.scene h2'), /patch-target/);
   assert.match(await report.textContent('.scene .legend'), /Bullet/);
+  const stage = report.locator('.scene .stage');
+  await stage.locator('svg').waitFor();
+  await stage.scrollIntoViewIfNeeded();
   const drawn = () => report.locator('canvas.sheet').evaluate((canvas) => canvas.toDataURL());
   const before = await drawn();
-  const box = await report.locator('.scene .stage').boundingBox();
+  const box = await stage.boundingBox();
   await report.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await report.mouse.down();
   await report.mouse.move(box.x + box.width / 2 + 60, box.y + box.height / 2 + 20, { steps: 3 });
   await report.mouse.up();
-  assert.notEqual(await drawn(), before);
+  assert.ok(await drawn() !== before);
+  assert.deepEqual(await violations(report), []);
   await report.context().close();
-});
+}
 
 test('a report can be given up', async () => {
   await open_sheet('flag-to-half-pipe');

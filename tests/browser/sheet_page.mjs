@@ -1,10 +1,11 @@
 // The studio with sheets, in a browser that draws in space: one page for all the tests of a file.
 
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before } from 'node:test';
+import { obj_text, square_mesh } from './square_mesh.mjs';
 import { patience, start_studio, webgl_in_software } from './studio_server.mjs';
 
 export const sheets = path.join(process.env.NUNO_SCENES, 'sheets');
@@ -50,6 +51,23 @@ export async function open_sheet(name, where = page) {
   await where.click('#gallery');
   await where.click(`.demo:has-text("${name}")`);
   await becomes(where, (wanted) => nuno_studio.app.doc.scene.name === wanted && Boolean(nuno_studio.app.results.native?.flight), name);
+  await settled(where);
+  await becomes(where, () => Boolean(nuno_studio.space.space));
+}
+
+// A small sheet, which bends on its way: for what is tested of the page and not of the engines.
+export const patch = {
+  initial: square_mesh(6, (u, v) => [u, 1 + v, 0]),
+  target: square_mesh(6, (u, v) => [2.5 + Math.sin(2 * u) / 2, 1 + v, 0.5 - Math.cos(2 * u) / 2]),
+};
+export async function open_patch(where = page) {
+  const files = Object.entries(patch).map(([name, mesh]) => {
+    const file = path.join(folder, `patch-${name}.obj`);
+    writeFileSync(file, obj_text(mesh));
+    return file;
+  });
+  await where.setInputFiles('#file', files);
+  await becomes(where, () => nuno_studio.app.doc.scene.name === 'patch-target' && Boolean(nuno_studio.app.results.native?.flight));
   await settled(where);
   await becomes(where, () => Boolean(nuno_studio.space.space));
 }
