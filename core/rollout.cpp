@@ -18,37 +18,42 @@ constexpr double torn_strain = 1000;
 /// Keeps the frames of a flight, interpolated between the two steps around each frame's time.
 class Recorder {
  public:
-  Recorder(double frames_per_second, double arrival_time, Rollout& rollout)
-      : rate_(frames_per_second), arrival_time_(arrival_time), rollout_(rollout) {}
+  Recorder(const RolloutOptions& options, double arrival_time, Rollout& rollout)
+      : rate_(options.frames_per_second),
+        keeps_forces_(options.keeps_forces),
+        arrival_time_(arrival_time),
+        rollout_(rollout) {}
 
-  /// After every step, and before the first.
-  void record(double time, const Simulation& cloth, bool arrived) {
+  /// Before the first step and after every one, with the control forces in it.
+  void record(double time, const Simulation& cloth, const Points& forces, bool arrived) {
     if (rate_ <= 0) return;
     for (; due() < arrival_time_ * (1 - 1e-9) && due() <= time; ++frame_) {
       // A step moves at its mean velocity.
-      keep(due(), cloth.positions() - (time - due()) * cloth.velocities());
+      keep(due(), cloth.positions() - (time - due()) * cloth.velocities(), forces);
     }
-    if (arrived) keep(arrival_time_, cloth.positions());
+    if (arrived) keep(arrival_time_, cloth.positions(), forces);
   }
 
   /// After every step beyond arrival.
-  void record_tail(double time, const Simulation& cloth) {
+  void record_tail(double time, const Simulation& cloth, const Points& forces) {
     if (rate_ <= 0) return;
     for (; due() <= time; ++frame_) {
       if (due() <= arrival_time_ * (1 + 1e-9)) continue;  // kept as the one of arrival
-      keep(due(), cloth.positions() - (time - due()) * cloth.velocities());
+      keep(due(), cloth.positions() - (time - due()) * cloth.velocities(), forces);
     }
   }
 
  private:
-  void keep(double time, Points positions) {
+  void keep(double time, Points positions, const Points& forces) {
     rollout_.frame_times.push_back(time);
     rollout_.frame_positions.push_back(std::move(positions));
+    if (keeps_forces_) rollout_.frame_forces.push_back(forces);
   }
 
   double due() const { return static_cast<double>(frame_) / rate_; }
 
   double rate_;
+  bool keeps_forces_;
   double arrival_time_;
   Index frame_ = 0;
   Rollout& rollout_;
@@ -139,7 +144,6 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
   double squared_force = 0;
   const bool looks_ahead = problem.is_sheet() && problem.damping_ratio > 0;
   VelocityAhead ahead;
-  recorder.record(0, cloth, false);
   for (Index n = 0; n < backend.steps(); ++n) {
     if (control.pulls()) {
       control.pull(
@@ -149,6 +153,7 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
       squared_force += pulls.squaredNorm();
       control.to_forces(pulls, forces);
     }
+    if (n == 0) recorder.record(0, cloth, forces, false);
     cloth.step(forces);
     reference.advance();
     const double strain = largest_strain(problem.cloth(), cloth.positions());
@@ -157,7 +162,7 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
       break;
     }
     result.max_strain = std::max(result.max_strain, strain);
-    recorder.record(static_cast<double>(n + 1) * h, cloth, n + 1 == backend.steps());
+    recorder.record(static_cast<double>(n + 1) * h, cloth, forces, n + 1 == backend.steps());
   }
   result.final = cloth.positions();
   result.final_velocity = cloth.velocities();
@@ -176,7 +181,7 @@ void fly_on(const Backend& backend, double tail, Simulation& cloth, Recorder& re
     cloth.step(no_forces);
     const double strain = largest_strain(problem.cloth(), cloth.positions());
     if (!(strain < torn_strain)) return tell_divergence(problem, n + 1, strain, cloth, result);
-    recorder.record_tail(static_cast<double>(n + 1) * h, cloth);
+    recorder.record_tail(static_cast<double>(n + 1) * h, cloth, no_forces);
   }
 }
 
@@ -190,7 +195,7 @@ Rollout rollout(const Backend& backend, const Gains& gains, const RolloutOptions
   result.gains = gains;
   result.launch_velocity = launch(backend);
   const std::unique_ptr<Simulation> cloth = backend.start(initial, result.launch_velocity);
-  Recorder recorder(options.frames_per_second, problem.arrival_time, result);
+  Recorder recorder(options, problem.arrival_time, result);
   const double squared_force = fly(backend, gains, *cloth, recorder, result);
   if (result.status == RolloutStatus::ok) fly_on(backend, options.tail, *cloth, recorder, result);
 

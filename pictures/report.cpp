@@ -132,6 +132,12 @@ std::string key(std::size_t engine) {
   return fmt::format("<span class=\"key {}\"></span>", series(engine));
 }
 
+/// With so many decimals, and small numbers with two digits, which these decimals would hide.
+std::string with_decimals(double value, int decimals) {
+  const bool hidden = value > 0 && value < std::pow(10, 1 - decimals);
+  return hidden ? fmt::format("{:.2g}", value) : fmt::format("{:.{}f}", value, decimals);
+}
+
 std::string table(const std::vector<ReportScene>& scenes) {
   std::string html =
       "<div class=\"wide\"><table>\n<thead><tr><th>scene</th><th class=\"engine\">engine</th>"
@@ -148,15 +154,17 @@ std::string table(const std::vector<ReportScene>& scenes) {
       const bool better = row.error.mean < comparison.rows[1 - i].error.mean;
       html += fmt::format(
           "<tr class=\"{}\"><td class=\"name\">{}</td><td class=\"engine\">{}{}</td>"
-          "<td>{:.2f}</td><td>{}</td><td class=\"{}\">{:.3f}</td><td>{:.2f}</td><td>{:.3f}</td>"
+          "<td>{:.2f}</td><td>{}</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td>"
           "<td>{}</td><td>{}</td><td>{}</td></tr>\n",
           i == 0 ? "first" : "last",
           i == 0 ? fmt::format("<a href=\"#scene-{}\">{}</a>", s + 1, xml_text(comparison.scene))
                  : "",
           key(i), engine_name(row.backend), percent * row.launch_only_error, shown(row.gain),
-          better ? "better" : "", percent * row.error.mean, percent * row.error.max,
-          percent * row.error_with_the_other_gain, row.evaluations, duration(row.seconds),
-          i == 0 ? fmt::format("{:.3f}", 100 * comparison.shape_difference.mean) : "");
+          better ? "better" : "", with_decimals(percent * row.error.mean, 3),
+          with_decimals(percent * row.error.max, 2),
+          with_decimals(percent * row.error_with_the_other_gain, 3), row.evaluations,
+          duration(row.seconds),
+          i == 0 ? with_decimals(100 * comparison.shape_difference.mean, 3) : "");
     }
   }
   return html +

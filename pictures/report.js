@@ -402,7 +402,7 @@ class SceneView {
     this.painter.paint([
       { flat: this.frames(0)[0], color: 'soft', opacity: 0.6 },
       { flat: this.target, color: 'target', opacity: 0.6 },
-      { flat: second, color: 'b', opacity: 1 },
+      { flat: second, color: 'b', opacity: 1, outlined: true },
       { flat: first, color: 'a', opacity: 0.85, shadow: true },
     ], { seen: (flat) => this.seen(flat), plot: this.plot, eye: [sa * ce, se, ca * ce] },
     hasRing ? ['cx', 'cy'].map((name) => Number(this.ring.getAttribute(name))) : null);

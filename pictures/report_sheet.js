@@ -20,6 +20,37 @@ class SheetPainter {
   constructor(canvas, faces, ground) {
     Object.assign(this, { canvas, faces, ground });
     this.shade = document.createElement('canvas');
+    this.border = this.borderOf(faces);
+  }
+
+  /// The edges of one face only, two particles each.
+  borderOf(faces) {
+    const edges = new Map();
+    for (const face of faces) {
+      face.forEach((a, k) => {
+        const edge = [a, face[(k + 1) % face.length]];
+        const key = [...edge].sort((x, y) => x - y).join();
+        if (!edges.delete(key)) edges.set(key, edge);
+      });
+    }
+    return this.joined([...edges.values()]);
+  }
+
+  /// Edges as lines, each from where the one before it ends.
+  joined(edges) {
+    const next = new Map(edges);
+    const lines = [];
+    while (next.size > 0) {
+      let [at] = next.keys();
+      const line = [at];
+      while (next.has(at)) {
+        const to = next.get(at);
+        next.delete(at);
+        line.push(at = to);
+      }
+      lines.push(line);
+    }
+    return lines;
   }
 
   resize(width, height) {
@@ -33,13 +64,15 @@ class SheetPainter {
     [this.width, this.height] = [width, height];
   }
 
-  /// poses: [{flat: x, y, z of each particle, color, opacity, shadow}], from back to front;
+  /// poses: [{flat: x, y, z of each particle, color, opacity, shadow, outlined: its border is drawn
+  /// upon all}], from back to front;
   /// ring: the place of one around what is to be looked at, or null.
   paint(poses, view, ring = null) {
     const context = this.canvas.getContext('2d');
     context.clearRect(0, 0, this.width, this.height);
     for (const pose of poses) if (pose.shadow) this.shadow(context, pose.flat, view);
     for (const pose of poses) this.cloth(context, pose, view);
+    for (const pose of poses) if (pose.outlined) this.outline(context, pose, view);
     if (!ring) return;
     context.strokeStyle = getComputedStyle(this.canvas).color;
     context.lineWidth = 1.5;
@@ -61,6 +94,19 @@ class SheetPainter {
   trace(context, face, places) {
     face.forEach((i, k) => (k ? context.lineTo(places[2 * i], places[2 * i + 1]) : context.moveTo(places[2 * i], places[2 * i + 1])));
     context.closePath();
+  }
+
+  outline(context, { flat, color }, view) {
+    const places = this.placed(flat, view);
+    context.strokeStyle = `rgb(${sheetColors[color][0].join(' ')})`;
+    context.lineWidth = 2;
+    context.setLineDash([7, 4]);
+    for (const line of this.border) {
+      context.beginPath();
+      for (const i of line) context.lineTo(places[2 * i], places[2 * i + 1]);
+      context.stroke();
+    }
+    context.setLineDash([]);
   }
 
   shadow(context, flat, view) {

@@ -23,18 +23,21 @@ std::string effort_unit_name(const Cloth& cloth) {
 }
 
 std::string crossing_words(const FlightCrossings& crossings, double size) {
-  const double percent = 100 / size;
+  // Two digits; a fall below the ground is many times the cloth.
+  const auto percent = [&](double depth) {
+    const double share = 100 * depth / size;
+    return share < 99.5 ? fmt::format("{:.2g}", share) : fmt::format("{:.0f}", share);
+  };
   std::string words = fmt::format("itself in no frame of {}", crossings.frames);
   if (crossings.crossed_frames > 0) {
-    words =
-        fmt::format("itself in {} of {} frames, first at {:.3g} s; {:.2g} % of L deep at {:.3g} s",
-                    crossings.crossed_frames, crossings.frames, crossings.first_time,
-                    percent * crossings.depth, crossings.deepest_time);
+    words = fmt::format("itself in {} of {} frames, first at {:.3g} s; {} % of L deep at {:.3g} s",
+                        crossings.crossed_frames, crossings.frames, crossings.first_time,
+                        percent(crossings.depth), crossings.deepest_time);
   }
   if (crossings.grounded_frames > 0) {
-    words += fmt::format("; the ground in {} frames, first at {:.3g} s, {:.2g} % of L deep",
+    words += fmt::format("; the ground in {} frames, first at {:.3g} s, {} % of L deep",
                          crossings.grounded_frames, crossings.ground_time,
-                         percent * crossings.ground_depth);
+                         percent(crossings.ground_depth));
   }
   return words;
 }

@@ -18,7 +18,6 @@
 #include <nuno/progress.h>
 #include "formats/result_json.h"
 #include "studio/page_files.h"
-#include "studio/studio_rollout.h"
 #include "studio/throw.h"
 #include "studio/uploads.h"
 
@@ -76,22 +75,23 @@ Json points_json(const Points& points) {
 }
 
 /// What the page shows of a sheet alone.
-void add_sheet(Json& head, const Problem& problem, Flight frames) {
+void add_sheet(Json& head, const Problem& problem, const Rollout& flight) {
   head["kind"] = "sheet";
   head["faces"] = problem.sheet().faces;
   head["ground"] = ground_height(problem.cloth().initial, problem.target);
-  while (!frames.times.empty() && frames.times.back() > (1 + 1e-9) * problem.arrival_time) {
-    frames.times.pop_back();  // what comes after is nobody's wish
-    frames.positions.pop_back();
-  }
-  const FlightCrossings crossings = flight_crossings(problem, frames.times, frames.positions);
+  std::vector<double> times = flight.frame_times;
+  std::erase_if(times, [&](double time) {  // what comes after is nobody's wish
+    return time > (1 + 1e-9) * problem.arrival_time;
+  });
+  const auto first = flight.frame_positions.begin();
+  const std::vector<Points> positions(first, first + static_cast<std::ptrdiff_t>(times.size()));
+  const FlightCrossings crossings = flight_crossings(problem, times, positions);
   head["crossings"] = crossings_head(crossings);
   head["crossings"]["faces"] = crossings.crossed_faces;
 }
 
 /// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.
-std::string drawable(const Throw& done, const Request& request, const Flight& frames,
-                     Clock::time_point start) {
+std::string drawable(const Throw& done, const Request& request, Clock::time_point start) {
   const Backend& backend = *done.backend;
   const Rollout& flight = done.flight;
   const Problem& problem = backend.problem();
@@ -104,7 +104,7 @@ std::string drawable(const Throw& done, const Request& request, const Flight& fr
     head["optimization"] = to_json(shown, request.options.optimizer);
   }
   if (done.refined) head["refinement"] = to_json(*done.refined);
-  if (problem.is_sheet()) add_sheet(head, problem, frames);
+  if (problem.is_sheet()) add_sheet(head, problem, flight);
   head["remarks"] = verdict(assess(backend));
   std::string text = dump(head);
   text.pop_back();  // the brace: the shapes follow
@@ -114,10 +114,10 @@ std::string drawable(const Throw& done, const Request& request, const Flight& fr
   append(text, problem.target);
   text += ",\"final\":";
   append(text, flight.final);
-  text += ",\"frames\":{\"times\":" + dump(frames.times) + ",\"positions\":";
-  append(text, frames.positions, request.turn);
+  text += ",\"frames\":{\"times\":" + dump(flight.frame_times) + ",\"positions\":";
+  append(text, flight.frame_positions, request.turn);
   text += ",\"forces\":";
-  append(text, frames.forces, request.turn);
+  append(text, flight.frame_forces, request.turn);
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   fmt::format_to(std::back_inserter(text), "}},\"seconds\":{:.6g}}}", seconds);
   return text;
@@ -125,14 +125,9 @@ std::string drawable(const Throw& done, const Request& request, const Flight& fr
 
 Answer throw_answer(const Request& request, std::optional<double> alpha) {
   const auto start = Clock::now();
-  const Options& options = request.options;
-  const Throw done = throw_cloth(request, alpha, KeptFrames::none);
+  const Throw done = throw_cloth(request, alpha, KeptFrames::of_request);
   if (diverged(done.flight)) return diverged_answer(done.file, *done.backend, done.flight);
-  Flight frames;
-  if (options.frames > 0) {
-    frames = fly(*done.backend, done.flight.gains, options.frames, options.after);
-  }
-  return {.body = drawable(done, request, frames, start)};
+  return {.body = drawable(done, request, start)};
 }
 
 /// How many gains a pareto-front tries: fewer of a scene whose rollouts take long.

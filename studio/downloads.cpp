@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <new>
 #include <optional>
@@ -16,6 +19,7 @@
 #include <nuno/comparison.h>
 #include <nuno/conditioning.h>
 #include <nuno/output.h>
+#include <nuno/parallel.h>
 #include <nuno/progress.h>
 #include <nuno/result_file.h>
 #include <nuno/scene_file.h>
@@ -58,6 +62,42 @@ std::string contents(std::FILE* file, const std::string& name) {
   }
   if (std::ferror(file)) throw OutputError(name + ": cannot be read back");
   return text;
+}
+
+/// The same objective, which tells how many gains it flies: all of a batch where they fly side by
+/// side, as with derivatives; else one after the other, each of which takes long.
+Objective counted(Objective objective, const std::function<void(std::size_t)>& tell) {
+  objective.errors = [tell, errors = objective.errors,
+                      in_batches = static_cast<bool>(objective.samples)](auto gains) {
+    if (in_batches) {
+      tell(gains.size());
+      return errors(gains);
+    }
+    std::vector<double> result(gains.size());
+    parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
+      const auto at = static_cast<std::size_t>(i);
+      result[at] = errors(gains.subspan(at, 1)).front();
+      tell(1);
+    });
+    return result;
+  };
+  return objective;
+}
+
+/// A comparison that tells how much of the report it is for is done.
+Comparison compare_for(const Request& request, const std::string& scene, const Backend& first,
+                       const Backend& second) {
+  constexpr double usual_rollouts = 330;  // two searches and three curves
+  constexpr double most = 0.95;           // the flights to be looked at follow
+  std::atomic<std::size_t> flown = 0;
+  const auto tell = [&](std::size_t rollouts) {
+    request.turn.check();
+    request.turn.report(std::min(most, static_cast<double>(flown += rollouts) / usual_rollouts));
+  };
+  return compare_engines(
+      scene, first, second,
+      {.objective_of = [&](const Backend& backend) { return counted(objective(backend), tell); },
+       .before_rollout = [&] { tell(1); }});
 }
 
 }  // namespace
@@ -103,7 +143,7 @@ Answer report_answer(const Request& request) {
   const auto first = make_backend(one, file), second = make_backend(other, file);
   require_quick(file, *first, request.options);
   require_quick(file, *second, request.options);
-  const Comparison comparison = compare_engines(file.scene.name, *first, *second);
+  const Comparison comparison = compare_for(request, file.scene.name, *first, *second);
   if (comparison.divergence) {
     const auto& [backend, flight] = *comparison.divergence;
     return diverged_answer(file, backend == one ? *first : *second, flight);

@@ -11,6 +11,7 @@
 #include "embedded/files_js.h"
 #include "embedded/gallery_js.h"
 #include "embedded/geometry_js.h"
+#include "embedded/hint_js.h"
 #include "embedded/index_html.h"
 #include "embedded/keyboard_js.h"
 #include "embedded/latency_js.h"
@@ -37,7 +38,7 @@ namespace nuno::studio {
 namespace {
 
 // A function: constants of other source files are made before main, in an unknown order.
-std::array<PageFile, 29> page_files() {
+std::array<PageFile, 30> page_files() {
   using namespace embedded;
   constexpr std::string_view js = "text/javascript; charset=utf-8";
   return {{{"/", "text/html; charset=utf-8", index_html},
@@ -50,6 +51,7 @@ std::array<PageFile, 29> page_files() {
            {"/files.js", js, files_js},
            {"/gallery.js", js, gallery_js},
            {"/geometry.js", js, geometry_js},
+           {"/hint.js", js, hint_js},
            {"/keyboard.js", js, keyboard_js},
            {"/latency.js", js, latency_js},
            {"/numbers.js", js, numbers_js},

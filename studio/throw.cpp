@@ -1,5 +1,7 @@
 #include "studio/throw.h"
 
+#include <nuno/conditioning.h>
+
 #include <cmath>
 #include <utility>
 
@@ -36,6 +38,13 @@ std::vector<Evaluation> between(const std::vector<Evaluation>& searched,
   return result;
 }
 
+RolloutOptions kept_frames(const Options& options, const SceneFile& file, KeptFrames frames) {
+  if (frames == KeptFrames::of_scene) return {.frames_per_second = file.scene.frames_per_second};
+  return {.frames_per_second = static_cast<double>(options.frames) / file.scene.arrival_time,
+          .tail = options.frames > 0 ? options.after : 0,
+          .keeps_forces = true};
+}
+
 }  // namespace
 
 Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrames frames) {
@@ -69,8 +78,12 @@ Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrame
       result.backend = made_ready();
     }
   }
-  const double kept = frames == KeptFrames::of_scene ? file.scene.frames_per_second : 0;
-  result.flight = rollout(*result.backend, gain, {.frames_per_second = kept});
+  RolloutOptions kept = kept_frames(options, file, frames);
+  result.flight = rollout(*result.backend, gain, kept);
+  if (kept.tail > 0 && diverged(result.flight)) {  // after it arrived, maybe: then it did arrive
+    kept.tail = 0;
+    result.flight = rollout(*result.backend, gain, kept);
+  }
   return result;
 }
 

@@ -23,8 +23,9 @@ struct Throw {
   Rollout flight;
 };
 
-/// The frames that a flight keeps.
-enum class KeptFrames { none, of_scene };
+/// The frames that a flight keeps: the scene's; or those that the request asks for, to be looked
+/// at, with the control forces and how it goes on after arrival.
+enum class KeptFrames { of_scene, of_request };
 
 /// The throw at the gain `alpha`, or at the best one where there is none: as `nuno simulate` and
 /// `nuno optimize` do it, with their functions and options. Throws InputError and Stopped.

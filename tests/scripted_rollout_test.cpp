@@ -113,6 +113,27 @@ TEST(ScriptedRollout, HasTheEffortOfEveryStepFromTheFirstToTheLast) {
   }
 }
 
+// The same flight: the frames' forces are those that the engine is given, and none after arrival.
+TEST(ScriptedRollout, KeepsTheForcesOfItsFrames) {
+  Problem problem = problem_of(cross());
+  problem.target = 2 * cross();
+  std::vector<Points> given;
+  const ScriptedBackend engine(problem, 4, [&](const Moment& now) -> Points {
+    given.push_back(now.forces);
+    return (1 - 0.25 * static_cast<double>(now.step)) * cross();
+  });
+  const Rollout flight =
+      rollout(engine, 0.5, {.frames_per_second = 4, .tail = 0.25, .keeps_forces = true});
+  ASSERT_EQ(flight.frame_forces.size(), 6u);
+  EXPECT_EQ(flight.frame_forces[0], given[0]);
+  for (std::size_t step = 0; step < 4; ++step) {
+    EXPECT_EQ(flight.frame_forces[step + 1], given[step]) << step;
+  }
+  EXPECT_GT(flight.frame_forces[4].norm(), 0);
+  EXPECT_TRUE(flight.frame_forces[5].isZero(0));
+  EXPECT_TRUE(rollout(engine, 0.5, {.frames_per_second = 4}).frame_forces.empty());
+}
+
 TEST(ScriptedRollout, DampsWithTheDampingRatioOfItsProblem) {
   for (const double ratio : {0.0, 0.2, 1.3}) {
     // A shape at rest at its target, that grows by 1/s: all force there is comes of its damping.

@@ -118,6 +118,20 @@ TEST_F(Studio, FramesReachArrivalAndFlyOn) {
   EXPECT_EQ(answer["frames"]["forces"][21], Json(std::vector(8, std::array{0, 0})));
 }
 
+// What is drawn is the very flight whose error is told, a sheet's damping included.
+TEST_F(Studio, ASheetsFramesEndWhereItArrives) {
+  Json sheet = Json::parse(
+      R"({"nuno_scene":1,"arrival_time":0.4,"reference":"morph","damping_ratio":0.7,
+          "initial":{"vertices":[[0,0,0],[1,0,0],[0,0,1],[1,0,1]],"faces":[[0,2,1],[1,2,3]]},
+          "target":{"vertices":[[2,1,0],[3,1,0],[2,1,1],[2.9,1.4,1]]}})");
+  const Json answer = json_of(post("/api/simulate?alpha=0.5&frames=8&after=0.1", sheet.dump()));
+  ASSERT_TRUE(answer.contains("frames")) << answer.dump();
+  const Json& frames = answer["frames"];
+  EXPECT_EQ(frames["positions"][8], answer["final"]);
+  EXPECT_EQ(frames["times"].size(), 11u);
+  EXPECT_EQ(answer["crossings"]["frames"], 9);
+}
+
 TEST_F(Studio, AnswersManyAtOnce) {
   std::atomic<int> right = 0;
   {

@@ -27,8 +27,8 @@ export async function ask(path, parameters, body, signal) {
   return response;
 }
 
-// How much of a page's film is made, 0 … 1.
-export async function film_progress(page) {
+// How much is made of a page's film or report, 0 … 1.
+export async function share_made(page) {
   const response = await fetch(`/api/progress?page=${page}`);
   return response.ok ? (await response.json()).progress : 0;
 }

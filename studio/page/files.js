@@ -1,6 +1,6 @@
 // Scenes from files and links; results, reports and films into files.
 
-import { ask, film_progress } from './client.js';
+import { ask, share_made } from './client.js';
 import { default_scene, file_text, sheet_scene } from './scene.js';
 import { app, is_sheet, no_refining, other_engine, scene } from './state.js';
 
@@ -9,16 +9,16 @@ const $ = (id) => document.getElementById(id);
 // What the program makes, and how its file ends.
 const kinds = {
   result: { path: 'result', ending: '-result.json', word: 'Result' },
-  report: { path: 'report', ending: '-report.html', word: 'Report' },
+  report: { path: 'report', ending: '-report.html', word: 'Report', takes_long: true },
   glb: { path: 'animation', parameters: { format: 'glb' }, ending: '.glb', word: 'Animated mesh' },
   pc2: { path: 'animation', parameters: { format: 'pc2' }, ending: '.pc2', word: 'Point cache' },
-  film: { path: 'film', ending: '.mp4', word: 'Film' },
+  film: { path: 'film', ending: '.mp4', word: 'Film', takes_long: true },
 };
 const is_mesh = ({ name }) => /\.(obj|ply|gltf|glb)$/i.test(name);
 const is_drawing = ({ name }) => /\.(svg|csv)$/i.test(name);
 const is_end = ({ name }) => /target|end|after|pose/i.test(name);
 
-const look_again = 250; // ms, at how much of a film is made
+const look_again = 250; // ms, at how much is made
 
 const file_name = () => (scene().name || 'scene').replace(/[^\p{L}\p{N} ._-]/gu, '-');
 
@@ -137,7 +137,7 @@ export class Files {
 
   // What the program makes of the throw that is shown.
   async make(kind) {
-    const { path, ending, word } = kinds[kind];
+    const { path, ending, word, takes_long } = kinds[kind];
     const engine = app.engine === 'box2d' ? other_engine() : 'native';
     const alpha = app.alpha ?? (engine !== 'native' && !app.own_gain ? app.results.native?.best : null) ?? null;
     const refine = alpha === null && app.refines && !no_refining();
@@ -145,22 +145,25 @@ export class Files {
     const { page } = this.throws.channels.file;
     const buttons = Object.keys(kinds).map((each) => $(`save-${each}`));
     const bar = $('making').querySelector('progress');
+    const stop = new AbortController();
     $('export').open = false;
     $('making').hidden = false;
-    $('making').querySelector('span').textContent = word;
+    $('making-what').textContent = word;
+    $('making-end').onclick = () => stop.abort();
     bar.removeAttribute('value');
     for (const button of buttons) button.disabled = true;
     $('status').textContent = `The ${word.toLowerCase()} is being made`;
-    const watch = kind === 'film' && setInterval(async () => {
-      const share = await film_progress(page).catch(() => 0);
-      if (share > 0) bar.value = share;
+    const watch = takes_long && setInterval(async () => {
+      const share = await share_made(page).catch(() => 0);
+      if (share > bar.value) bar.value = share;
     }, look_again);
     try {
-      const response = await ask(path, { page, ...parameters }, JSON.stringify(scene()));
+      const response = await ask(path, { page, ...parameters }, JSON.stringify(scene()), stop.signal);
       download(await response.blob(), `${file_name()}${ending}`);
       $('status').textContent = `The ${word.toLowerCase()} is saved`;
     } catch (error) {
-      this.trouble(error.message.replace(/^--out: flight\.\w+: /, ''));
+      if (stop.signal.aborted) $('status').textContent = `The ${word.toLowerCase()} is given up`;
+      else this.trouble(error.message.replace(/^--out: flight\.\w+: /, ''));
     }
     clearInterval(watch);
     for (const button of buttons) button.disabled = false;

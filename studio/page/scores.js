@@ -66,7 +66,7 @@ function show_refining({ at_rest }) {
     const landed = refinement.status === 'converged'
       ? 'Landed exactly'
       : `As near as this cloth can come: ${digits((100 * flight.error.mean) / length)} % (${refinement.reason})`;
-    text = `${landed}. The motion was corrected by up to ${metres(refinement.largest_offset)}; without that, ${digits((100 * refinement.error_before) / length)} %. ${refinement.rollouts} throws${refinement.jacobians > 0 ? ` and ${refinement.jacobians} Jacobians` : ''} in ${seconds(refinement.seconds)}.`;
+    text = `${landed}. The motion was corrected by up to ${metres(refinement.largest_offset)}; without that, ${digits((100 * refinement.error_before) / length)} %. ${refinement.rollouts} throws${refinement.jacobians > 0 ? ` and ${refinement.jacobians} Jacobian${refinement.jacobians > 1 ? 's' : ''}` : ''} in ${seconds(refinement.seconds)}.`;
   } else if (app.refines && !at_rest) {
     text = 'Lands exactly once you let go.';
   }

@@ -9,6 +9,10 @@ const most_pixels = 1.5; // of the canvas, per pixel of the page: finer costs mo
 const force_length = 0.25; // of L, of an arrow as large as a particle's weight
 const longest_force = 1; // of L
 const gizmo_modes = { move: 'translate', turn: 'rotate', scale: 'scale' };
+// Of the gizmo's axes and planes, in place of its own full red, green, blue and their mixtures.
+const gizmo_colors = {
+  ff0000: '#d1432b', '00ff00': '#3a9a4b', '0000ff': '#3a6fd1', ffff00: '#d19a2b', '00ffff': '#2b9aa8', ff00ff: '#a04bb5',
+};
 
 // Without a graphics card smooth edges take most of the time.
 function draws_in_software() {
@@ -62,21 +66,30 @@ class Cloth {
     this.edges = edges_of(faces, false);
     this.border = edges_of(faces, true);
     this.lines.setIndex(this.edges);
+    this.shape = this.normals_of = this.colors = this.drawn_lines = null;
   }
 
-  // options: {color, back, opacity, behind: how far it steps back where another lies on it, shaded,
-  //           wires, colors: per vertex or null}
+  // `shape` and `colors` are drawn as they were when they were given first. options: {color, back,
+  // opacity, behind: how far it steps back where another lies on it, shaded, wires, colors: per vertex
+  // or null}
   show(shape, { color, back, opacity = 1, behind = 1, shaded = true, wires = false, colors = null }) {
     this.group.visible = Boolean(shape);
     if (!shape) return;
-    shape.forEach((point, i) => this.at.setXYZ(i, ...point));
-    this.at.needsUpdate = true;
-    if (shaded) this.points.computeVertexNormals();
+    if (shape !== this.shape) {
+      shape.forEach((point, i) => this.at.setXYZ(i, ...point));
+      this.at.needsUpdate = true;
+      this.shape = shape;
+    }
+    if (shaded && shape !== this.normals_of) {
+      this.points.computeVertexNormals();
+      this.normals_of = shape;
+    }
     this.front.color.set(colors ? '#ffffff' : color);
     this.back.color.set(colors ? '#ffffff' : back ?? color);
-    if (colors) {
+    if (colors && colors !== this.colors) {
       colors.forEach((rgb, i) => this.color.setXYZ(i, ...rgb));
       this.color.needsUpdate = true;
+      this.colors = colors;
     }
     for (const material of [this.front, this.back]) {
       if (material.vertexColors !== (colors ? THREE.VertexColors : THREE.NoColors)) {
@@ -91,8 +104,10 @@ class Cloth {
     }
     for (const mesh of this.meshes) mesh.visible = shaded;
     this.wires.material.color.set(color);
-    this.lines.setIndex(wires || !shaded ? this.edges : this.border);
-    this.wires.material.opacity = wires || !shaded ? 0.8 : 0.55;
+    const lines = wires || !shaded ? this.edges : this.border;
+    if (lines !== this.drawn_lines) this.lines.setIndex(lines);
+    this.drawn_lines = lines;
+    this.wires.material.opacity = lines === this.edges ? 0.8 : 0.55;
   }
 }
 
@@ -125,7 +140,7 @@ export class Space {
   }
 
   make_lights() {
-    this.sky = new THREE.HemisphereLight('#ffffff', '#b9bdc9', 0.86);
+    this.sky = new THREE.HemisphereLight('#ffffff', '#b9bdc9');
     this.sun = new THREE.DirectionalLight('#ffffff', 0.36);
     this.sun.position.set(0.25, 1, 0.3);
     this.shadow = new Shadow();
@@ -141,6 +156,10 @@ export class Space {
     this.scene.add(this.handle);
     this.gizmo = new TransformControls(this.camera, this.canvas);
     this.gizmo.setSize(0.65);
+    this.gizmo.traverse(({ material }) => {
+      const color = material && gizmo_colors[material.color.getHexString()];
+      if (color) material.color.set(color);
+    });
     this.scene.add(this.gizmo);
     this.gizmo.addEventListener('change', () => this.on.draw());
     this.gizmo.addEventListener('dragging-changed', ({ value }) => {
@@ -211,11 +230,11 @@ export class Space {
     this.orbit.update();
   }
 
-  // As large as what may throw a shadow on it.
+  // As large as what may throw a shadow on it, and more.
   lay_ground(box, ground) {
     const size = box.getSize(new THREE.Vector3()), middle = box.getCenter(new THREE.Vector3());
     const wide = Math.max(size.x, size.z, size.y) * 1.6;
-    this.shadow.lay(middle, ground, wide);
+    this.shadow.lay(ground, wide);
     const cell = 10 ** Math.floor(Math.log10(wide / 4));
     const cells = Math.max(2, 2 * Math.ceil(wide / cell / 2));
     if (this.grid) this.scene.remove(this.grid);
@@ -226,36 +245,43 @@ export class Space {
     this.scene.add(this.grid);
   }
 
-  // what: {start, target, cloths: [{shape, color, back, stale, errors, forces, ghosts, path, crossed}],
-  //        wires, length, effort_unit}
+  // what: {start, target, cloths: [{shape, color, back, stale, errors, forces, ghosts, path, crossed,
+  //        wires}], wires, length, effort_unit}
   draw(what, colors) {
     this.start.show(what.start, { color: colors.initial, opacity: 0.4, wires: what.wires, shaded: !what.wires });
     this.target.show(what.target, { color: colors.target, opacity: 0.3, behind: 6, wires: what.wires, shaded: !what.wires });
     this.cloths.forEach((cloth, i) => {
       const shown = what.cloths[i];
+      const wires = what.wires || shown?.wires;
       cloth.show(shown?.shape, {
-        color: shown?.color, back: shown?.back, shaded: !what.wires, wires: what.wires,
+        color: shown?.color, back: shown?.back, shaded: !wires, wires,
         opacity: shown?.stale ? 0.5 : 1, colors: shown?.errors,
       });
     });
     this.draw_lines(what, colors);
     this.draw_crossed(what.cloths, colors);
     this.shadow.draw(what.cloths.map(({ shape }) => shape), this.faces, colors.shade);
+    this.sky.intensity = colors.sky;
     this.gizmo.visible = Boolean(this.gizmo.object) && !what.playing;
     this.renderer.render(this.scene, this.camera);
   }
 
   draw_lines({ cloths, length, effort_unit }, colors) {
-    const put = (part, points, color) => {
-      part.visible = points.length > 0;
-      if (!points.length) return;
-      part.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(points), 3));
+    // `from`: what the points are made of, which are made anew only where that is another.
+    const put = (part, from, points_of, color) => {
+      if (part.from?.length !== from.length || part.from.some((each, i) => each !== from[i])) {
+        part.from = from;
+        part.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(points_of()), 3));
+      }
+      part.visible = part.geometry.attributes.position.count > 0;
       part.material.color.set(color);
     };
     const { border } = this.start;
-    put(this.trails, cloths.flatMap(({ ghosts }) => (ghosts ?? []).flatMap((ghost) => border.flatMap((i) => ghost[i]))), cloths[0]?.color);
-    put(this.paths, cloths.flatMap(({ path }) => (path ?? []).slice(1).flatMap((point, k) => [...path[k], ...point])), cloths[0]?.color);
-    put(this.arrows, cloths.flatMap(({ shape, forces }) => (forces ? arrows(shape, forces, length, effort_unit) : [])), colors.force);
+    const first = cloths[0]?.color ?? colors.a;
+    put(this.trails, cloths.map(({ ghosts }) => ghosts), () => cloths.flatMap(({ ghosts }) => (ghosts ?? []).flatMap((ghost) => border.flatMap((i) => ghost[i]))), first);
+    put(this.paths, cloths.map(({ path }) => path), () => cloths.flatMap(({ path }) => (path ?? []).slice(1).flatMap((point, k) => [...path[k], ...point])), first);
+    put(this.arrows, cloths.flatMap(({ shape, forces }) => (forces ? [shape, forces] : [])),
+      () => cloths.flatMap(({ shape, forces }) => (forces ? arrows(shape, forces, length, effort_unit) : [])), colors.force);
   }
 
   // Faces that pass through others.

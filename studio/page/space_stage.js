@@ -10,6 +10,15 @@ const least_error_shown = 1e-3; // of L: below it all is as good as right
 
 const $ = (id) => document.getElementById(id);
 
+// What is drawn of a flight, made once for as long as nothing else is asked for.
+const made_of = new WeakMap();
+function once(flight, what, key, make) {
+  if (!made_of.has(flight)) made_of.set(flight, {});
+  const kept = made_of.get(flight);
+  if (kept[what]?.key !== key) kept[what] = { key, made: make() };
+  return kept[what].made;
+}
+
 // The frame that is nearest to a time.
 const nearest_frame = ({ times }, time) =>
   times.reduce((best, t, i) => (Math.abs(t - time) < Math.abs(times[best] - time) ? i : best), 0);
@@ -79,7 +88,7 @@ export class SpaceStage {
     const { flight } = result;
     const { frames } = flight;
     const at_arrival = app.time === null;
-    const found = at_arrival ? null : at_time(frames, app.time);
+    const found = at_arrival ? null : once(flight, 'moment', app.time, () => at_time(frames, app.time));
     const color = engine === 'native' ? colors.a : colors.b;
     const cloth = {
       shape: found ? found.shape : flight.final, color, back: sheet.mixed(color, colors.ink, 0.25), stale: result.stale,
@@ -89,14 +98,16 @@ export class SpaceStage {
       cloth.forces = found ? found.forces : frames.forces[last];
     }
     if (app.errors) {
-      cloth.errors = sheet.error_colors(flight.final, flight.target, Math.max(flight.error.max, least_error_shown * flight.size), sheet.shares_of(color), sheet.shares_of(colors.bad));
+      cloth.errors = once(flight, 'errors', color, () =>
+        sheet.error_colors(flight.final, flight.target, Math.max(flight.error.max, least_error_shown * flight.size), sheet.shares_of(color), sheet.shares_of(colors.bad)));
     }
     const crossed = flight.crossings?.faces;
     if (crossed?.length) cloth.crossed = crossed[nearest_frame(frames, app.time ?? scene().arrival_time)];
     if (app.ghosts && frames.times.length > 1) {
       const until = at_arrival ? scene().arrival_time : end_time();
-      cloth.ghosts = Array.from({ length: ghosts_shown - 1 }, (_, i) => at_time(frames, ((i + 1) / ghosts_shown) * scene().arrival_time).shape);
-      cloth.path = frames.positions.filter((_, i) => frames.times[i] <= until).map(sheet.middle);
+      cloth.ghosts = once(flight, 'ghosts', 0, () =>
+        Array.from({ length: ghosts_shown - 1 }, (_, i) => at_time(frames, ((i + 1) / ghosts_shown) * scene().arrival_time).shape));
+      cloth.path = once(flight, 'path', until, () => frames.positions.filter((_, i) => frames.times[i] <= until).map(sheet.middle));
     }
     return cloth;
   }
@@ -107,9 +118,10 @@ export class SpaceStage {
     this.space.set_faces(initial.faces, initial.vertices.length);
     this.space.take(sheet.middle(target.vertices));
     const { flight } = app.results.native ?? {};
+    const cloths = engines().filter(shows).map((engine) => this.cloth_of(engine, colors)).filter(Boolean);
+    if (cloths.length > 1) cloths[1].wires = true; // or they hide one another where they are alike
     this.space.draw({
-      start: initial.vertices, target: target.vertices, wires: app.wires, playing: app.playing,
-      cloths: engines().filter(shows).map((engine) => this.cloth_of(engine, colors)).filter(Boolean),
+      start: initial.vertices, target: target.vertices, wires: app.wires, playing: app.playing, cloths,
       length: this.length, effort_unit: flight?.effort_unit ?? 1,
     }, colors);
     this.show_legend();

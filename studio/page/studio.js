@@ -6,6 +6,7 @@ import { make_fields, update_fields } from './fields.js';
 import { Files, save, validated } from './files.js';
 import { Gallery } from './gallery.js';
 import * as geometry from './geometry.js';
+import { show_hint, welcome_newcomers } from './hint.js';
 import { listen } from './keyboard.js';
 import { digits } from './numbers.js';
 import { Player } from './player.js';
@@ -40,7 +41,7 @@ function read_colors() {
   for (const name of ['paper', 'panel', 'line', 'ink', 'quiet', 'faint', 'grid', 'axis', 'initial', 'target', 'a', 'b', 'force', 'bad']) {
     colors[name] = style.getPropertyValue(`--${name}`).trim();
   }
-  colors.shade = Number(style.getPropertyValue('--shade'));
+  for (const name of ['shade', 'sky']) colors[name] = Number(style.getPropertyValue(`--${name}`));
 }
 
 // In the next frame, however often something changes until then: the stage, and with `all` the rest.
@@ -55,51 +56,13 @@ function draw() {
   frame = 0;
   if (is_sheet()) space.draw(colors);
   else draw_stage(view, colors, editor.gesture?.kind === 'draw' ? editor.gesture.points : null);
-  show_hint();
+  show_hint(space.trouble, editor.gesture?.kind === 'draw' ? editor.gesture.points : null);
   player.show_clock();
   if (!all_due) return;
   all_due = false;
   charts.draw(colors);
   show_scores(throws);
   throws.latency.drawn();
-}
-
-function sheet_hint() {
-  if (space.trouble) return space.trouble;
-  if (app.time !== null && app.time > scene().arrival_time * 1.0001) return 'After arrival nothing controls the cloth: it flies on.';
-  if (app.tool === 'pan') return 'Drag to turn the view, scroll or pinch to zoom, drag with the right button to pan.';
-  const verb = { move: 'Move', turn: 'Turn', scale: 'Scale' }[app.tool];
-  return `${verb} the target by its handle: the best throw follows. Drag beside it to turn the view.`;
-}
-
-function show_hint() {
-  const text = is_sheet() ? sheet_hint() : chain_hint();
-  if ($('hint').textContent !== text) $('hint').textContent = text;
-}
-
-function chain_hint() {
-  const { initial, target, target_length } = scene();
-  const cloth = geometry.length(initial), drawn = geometry.length(target);
-  let text;
-  if (editor.gesture?.kind === 'draw') {
-    const far = geometry.length(editor.gesture.points);
-    text = app.selected === 'target' ? `${digits(far)} m drawn; the cloth is ${digits(cloth)} m` : `${digits(far)} m of cloth`;
-  } else if (app.time !== null && app.time > scene().arrival_time * 1.0001) {
-    text = 'After arrival nothing controls the cloth: it flies on.';
-  } else if (app.tool === 'draw') {
-    text = `Draw the ${app.selected} shape in one stroke.`;
-  } else if (Math.abs(drawn / cloth - 1) >= 0.004) {
-    text = target_length === 'fit'
-      ? `The target is drawn ${digits(drawn)} m long, the cloth is ${digits(cloth)} m: it is scaled by ${digits(cloth / drawn)} (dotted: as drawn).`
-      : `The target is ${digits(drawn)} m long and left as drawn, the cloth is ${digits(cloth)} m: it cannot cover it exactly.`;
-  } else if (app.tool === 'points') {
-    text = 'Drag a point; its neighbours follow. With Shift it moves alone.';
-  } else if (app.tool === 'pan') {
-    text = 'Drag to pan, scroll or pinch to zoom.';
-  } else {
-    text = `Drag the ${app.selected}: the best throw follows.`;
-  }
-  return text;
 }
 
 let note_until = 0; // a note about the scene itself stays for a while
@@ -345,7 +308,6 @@ const actions = {
   'fit-view': () => { fit(); draw_soon(); },
   swap: () => { swap_poses(); changed(false); },
   gallery: () => gallery.show(),
-  'first-done': () => welcome(false),
   'refine-set': set_up_refining,
   play: () => player.play(!app.playing),
   new: () => { app.refines = true; use(default_scene()); },
@@ -434,23 +396,13 @@ addEventListener('hashchange', () => {
   if (text && text !== app.doc.committed) files.open_text(text);
 });
 
-// Three steps for who is here for the first time.
-function welcome(shows_it) {
-  $('first').hidden = !shows_it;
-  if (shows_it) return;
-  try { localStorage.setItem('nuno-studio-known', '1'); } catch { /* it comes again */ }
-}
-const is_known = () => {
-  try { return localStorage.getItem('nuno-studio-known') !== null; } catch { return true; }
-};
-
 async function start() {
   set_theme(kept_theme() ?? (dark.matches ? 'dark' : 'light'));
   make_fields(changed);
   for (const name of toggles) $(name).setAttribute('aria-pressed', app[name]);
   const { text, lands } = kept();
   app.refines = text === null ? true : lands ?? false;
-  welcome(!is_known());
+  welcome_newcomers();
   fetch('/api/about').then((answer) => answer.json()).then(({ materials }) => $('material').append(...materials.map((each) => new Option(each, each))));
   let opened = null, problem = null;
   try {

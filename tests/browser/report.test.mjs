@@ -8,6 +8,7 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
+import { violations } from './accessibility.mjs';
 
 // Few particles and long steps: the page is tested, not the engines.
 const scene = {
@@ -216,6 +217,14 @@ for (const viewport of [{ width: 1280, height: 900 }, { width: 390, height: 844 
     await page.close();
   });
 }
+
+test('nothing of it breaks a rule of axe-core, light and dark', async () => {
+  for (const colorScheme of ['light', 'dark']) {
+    const page = await opened({ colorScheme });
+    assert.deepEqual(await violations(page), []);
+    await page.close();
+  }
+});
 
 test('it fits a phone, a dark screen and paper', async () => {
   for (const width of [360, 390, 768, 1280, 1920]) {

@@ -5,6 +5,8 @@ import { chromium } from 'playwright-core';
 
 export const program = process.env.NUNO_PROGRAM;
 export const patience = 120_000; // for a machine that has other work
+// WebGL without a graphics card: arguments for the browser.
+export const webgl_in_software = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
 
 // `more` are arguments for the browser.
 export async function start_studio(more = []) {

@@ -14,6 +14,8 @@ struct RolloutOptions {
   double frames_per_second = 0;
   /// Flight after arrival, without control, whose frames are kept as well [s].
   double tail = 0;
+  /// Whether the control forces in these frames are kept.
+  bool keeps_forces = false;
 };
 
 enum class RolloutStatus { ok, diverged };
@@ -31,8 +33,11 @@ struct Rollout {
   std::optional<double> step_error;     ///< where it was measured, see conditioning.h [1]
   std::vector<double> frame_times;      ///< [s]
   std::vector<Points> frame_positions;  ///< [d × N] each, m
-  Index diverged_at_step = 0;           ///< the first step with a bad value
-  std::string reason;                   ///< why it diverged, for people
+  /// Of the step that ends at the frame or after it, of the first frame's the first one's; 0 after
+  /// arrival [d × N] each, N. Where they are kept.
+  std::vector<Points> frame_forces;
+  Index diverged_at_step = 0;  ///< the first step with a bad value
+  std::string reason;          ///< why it diverged, for people
 };
 
 /// Launch, then {shape control, step} until arrival, under gains ≥ 0 [N/m]; 0 is launch only.
