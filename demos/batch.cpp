@@ -15,6 +15,7 @@
 #include <nuno/input.h>
 #include <nuno/output.h>
 #include <nuno/result_file.h>
+#include <nuno/search.h>
 #include "batch_summary.h"
 #include "commands.h"
 #include "scene_paths.h"
@@ -84,22 +85,21 @@ Finish thrown(Shot& shot, const std::string& engine, const std::stop_token& stop
   SceneFile file = read_scene_file(shot.scene);
   file.problem.stop = stop;
   require_few_frames(file);
-  std::shared_ptr<const Backend> backend = make_backend(engine, file);
-  const std::string_view optimizer = optimizer_names.front();
-  const Optimization found{std::string(optimizer), run_optimizer(optimizer, objective(*backend))};
-  JudgedRollout flown = judged_rollout(*backend, file, found.summary.gain,
-                                       {.frames_per_second = file.scene.frames_per_second});
-  if (flown.finer) backend = std::move(flown.finer);
-  const auto flight = std::make_shared<const Rollout>(std::move(flown.flight));
-  if (diverged(*flight)) {
-    return ends(shot, State::diverged, divergence_message(file.path, *backend, *flight));
+  const SearchAnswer answer = search(file, make_backend(engine, file), {});
+  const JudgedRollout flown = judged_rollout(*answer.backend, file, answer.gains,
+                                             {.frames_per_second = file.scene.frames_per_second});
+  const Backend& backend = flown.finer ? *flown.finer : *answer.backend;
+  if (diverged(flown.flight)) {
+    return ends(shot, State::diverged, divergence_message(file.path, backend, flown.flight));
   }
-  const double growth = bounded_sensitivity(*backend, *flight);
-  return [&shot, backend, flight, found, growth, input = std::move(file.input)] {
+  const double growth = bounded_sensitivity(backend, flown.flight);
+  // As text already: only what waits for the disk is left to the one thread that writes.
+  std::string text = written_text([&](std::FILE* result) {
+    write_result(result, file.input, backend, flown.flight, growth, answer.how);
+  });
+  return [&shot, text = std::move(text)] {
     try {
-      write_output(shot.result, [&](std::FILE* result) {
-        write_result(result, input, *backend, *flight, growth, found);
-      });
+      write_output(shot.result, text);
       shot.state = State::thrown;
     } catch (const OutputError& error) {
       ends(shot, State::unwritten, error.what())();

@@ -156,11 +156,6 @@ std::string page(const std::vector<Shot>& shots, const std::vector<Row>& rows) {
   return text + "</table>\n" + pictures;
 }
 
-void write(const fs::path& path, const std::string& text) {
-  write_output(path.string(),
-               [&](std::FILE* file) { std::fwrite(text.data(), 1, text.size(), file); });
-}
-
 }  // namespace
 
 bool is_result(const std::string& path, const std::string& backend) {
@@ -181,12 +176,12 @@ void write_batch_summary(const std::string& folder, const std::vector<Shot>& sho
     rows[i] = row_of(shots[i]);
     return [&, i] {
       if (rows[i].cells.empty()) return;
-      write(pictures / picture_name(shots[i]), rows[i].picture);
+      write_output(pictures / picture_name(shots[i]), rows[i].picture);
       rows[i].picture = {};
     };
   });
-  write(out / "summary.csv", csv(shots, rows));
-  write(out / "report.html", page(shots, rows));
+  write_output(out / "summary.csv", csv(shots, rows));
+  write_output(out / "report.html", page(shots, rows));
   fmt::print("{} and {}\n", (out / "summary.csv").string(), (out / "report.html").string());
 }
 

@@ -83,8 +83,7 @@ std::string file_name(const std::string& scene) {
 void write_report(const std::string& folder, const std::vector<ReportScene>& scenes,
                   std::FILE* people) {
   const auto write = [&](const std::string& name, const std::string& text) {
-    write_output((fs::path(folder) / name).string(),
-                 [&](std::FILE* file) { std::fwrite(text.data(), 1, text.size(), file); });
+    write_output(fs::path(folder) / name, text);
   };
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const std::string name =

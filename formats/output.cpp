@@ -8,8 +8,10 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <new>
 #include <string_view>
 #include <system_error>
 
@@ -159,6 +161,25 @@ void write_output(const std::string& path, const std::function<void(std::FILE*)>
   }
 } catch (const std::system_error& error) {  // fmt::print's, where a disk is full
   refuse(path, error.code().message());
+}
+
+void write_output(const std::string& path, std::string_view text) {
+  // What it cannot write, the file remembers.
+  write_output(path, [&](std::FILE* file) { std::fwrite(text.data(), 1, text.size(), file); });
+}
+
+std::string written_text(const std::function<void(std::FILE*)>& write) {
+  char* text = nullptr;  // the file's own until it is closed
+  std::size_t size = 0;
+  const auto release = [&text](std::FILE* file) {
+    std::fclose(file);
+    std::free(text);
+  };
+  const std::unique_ptr<std::FILE, decltype(release)> file(open_memstream(&text, &size), release);
+  if (!file) throw std::bad_alloc();
+  write(file.get());
+  if (std::fflush(file.get()) != 0 || std::ferror(file.get())) throw std::bad_alloc();
+  return {text, size};
 }
 
 void stop_where_ended() {

@@ -74,14 +74,7 @@ void write_json(std::FILE* file, const Flight& flight) {
 }
 
 std::string to_json(const Flight& flight) {
-  char* text = nullptr;
-  std::size_t size = 0;
-  File file(open_memstream(&text, &size));
-  if (!file) throw std::bad_alloc();
-  write_json(file.get(), flight);
-  file.reset();
-  const std::unique_ptr<char, decltype(&std::free)> held(text, std::free);
-  return {text, size};
+  return written_text([&](std::FILE* file) { write_json(file, flight); });
 }
 
 void save(const Flight& flight, const std::string& path, const AnimationOptions& animation) {

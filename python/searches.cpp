@@ -3,9 +3,10 @@
 #include <nuno/comparison.h>
 #include <nuno/conditioning.h>
 #include <nuno/output.h>
+#include <nuno/parallel.h>
 #include <nuno/reference_motion.h>
 
-#include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include "arrays.h"
@@ -85,14 +86,16 @@ FlightPointer optimize(const ScenePointer& scene, const std::string& backend,
   return flight;
 }
 
+/// OnOneCore for as long as a `with` of Python's lasts.
+struct HeldCore {
+  std::optional<OnOneCore> alone;
+};
+
 /// compare.json of one scene, as text.
 std::string compare_json(const ScenePointer& scene) {
   const std::stop_source stop;
   const SceneFile file = stoppable(*scene, stop);
-  char* text = nullptr;
-  std::size_t size = 0;
-  File memory(open_memstream(&text, &size));
-  if (!memory) throw std::bad_alloc();
+  std::string text;
   without_lock(
       [&] {
         const auto& [one, other] = engines_for(file.problem);
@@ -103,12 +106,10 @@ std::string compare_json(const ScenePointer& scene) {
           throw Diverged(
               divergence_message(file.path, backend == first->name() ? *first : *second, flight));
         }
-        write_comparisons(memory.get(), {comparison});
+        text = written_text([&](std::FILE* out) { write_comparisons(out, {comparison}); });
       },
       stop);
-  memory.reset();
-  const std::unique_ptr<char, decltype(&std::free)> held(text, std::free);
-  return {text, size};
+  return text;
 }
 
 }  // namespace
@@ -129,6 +130,10 @@ void add_searches(py::module_& module) {
       "scene"_a, "backend"_a, "optimizer"_a, "error_limit"_a, "effort_limit"_a, "coefficients"_a,
       "refine"_a, "robust"_a, "tail"_a, "The flight at the best gain.");
   module.def("compare_json", compare_json, "scene"_a, "compare.json of one scene.");
+  py::class_<HeldCore>(module, "OnOneCore", "In a `with`: this thread's work takes one core.")
+      .def(py::init<>())
+      .def("__enter__", [](HeldCore& self) { self.alone.emplace(); })
+      .def("__exit__", [](HeldCore& self, const py::args&) { self.alone.reset(); });
 }
 
 }  // namespace nuno::python

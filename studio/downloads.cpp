@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -32,26 +31,6 @@ namespace nuno::studio {
 namespace {
 
 constexpr double longest_film = 10;  // seconds of flight
-
-/// Calls `write` with a FILE that ends up in a string.
-template <typename Write>
-std::string printed(const Write& write) {
-  char* text = nullptr;
-  std::size_t size = 0;
-  std::FILE* const file = open_memstream(&text, &size);
-  if (!file) throw std::bad_alloc();
-  try {
-    write(file);
-  } catch (...) {
-    std::fclose(file);
-    std::free(text);
-    throw;
-  }
-  const bool whole = std::fclose(file) == 0;
-  const std::unique_ptr<char, decltype(&std::free)> owner(text, std::free);
-  if (!whole) throw std::bad_alloc();
-  return {text, size};
-}
 
 std::string contents(std::FILE* file, const std::string& name) {
   std::rewind(file);
@@ -108,7 +87,7 @@ Answer result_answer(const Request& request) {
   std::optional<Optimization> optimization;
   if (done.found) optimization = Optimization{request.options.optimizer, *done.found};
   if (done.refined) optimization->refinement = done.refined;
-  return {.body = printed([&](std::FILE* file) {
+  return {.body = written_text([&](std::FILE* file) {
             write_result(file, done.file.input, *done.backend, done.flight,
                          bounded_sensitivity(*done.backend, done.flight), optimization);
           }),
@@ -133,7 +112,7 @@ Answer animation_answer(const Request& request) {
     for (Points& shape : animation.positions) shape = ribbon(shape, width);
   }
   return {.type = format == ".glb" ? "model/gltf-binary" : "application/octet-stream",
-          .body = printed([&](std::FILE* file) { write_animation(file, format, animation); }),
+          .body = written_text([&](std::FILE* file) { write_animation(file, format, animation); }),
           .file_name = "flight" + format};
 }
 

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -138,22 +139,27 @@ TEST_F(Batch, GoesOnWhereItWasInterrupted) {
 
   std::mt19937 random(3);
   std::uniform_real_distribution<double> moment(0, 0.5 * whole.count());
+  constexpr std::array signals = {SIGTERM, SIGKILL, SIGINT};
   const int kills = wished("NUNO_MOMENTS", 4);
+  std::map<std::string, fs::file_time_type> made;  // when the results that are there were
   int ended = 0;
   for (int i = 0; i < kills; ++i) {
-    const int signal = i % 2 ? SIGKILL : SIGTERM;
+    const int signal = signals[static_cast<std::size_t>(i) % signals.size()];
     const Process process(words("out", {}), in_folder("stdout"), in_folder("stderr"));
     std::this_thread::sleep_for(std::chrono::duration<double>(moment(random)));
     process.send(signal);
     ended += process.wait() == -signal;
     if (!fs::exists(in_folder("out"))) continue;
     for (const auto& [name, text] : files("out")) {
-      if (name.starts_with(".nuno-") && signal == SIGKILL) {
+      if (fs::path(name).filename().string().starts_with(".nuno-") && signal == SIGKILL) {
         fs::remove(in_folder("out") / name);
       } else {
         ASSERT_TRUE(wanted.contains(name)) << name << " is left";
         EXPECT_EQ(text, wanted.at(name)) << name << " is not whole";
       }
+      if (!name.ends_with(".json")) continue;
+      const auto now = fs::last_write_time(in_folder("out") / name);
+      EXPECT_EQ(made.emplace(name, now).first->second, now) << name << " is thrown twice";
     }
   }
   std::printf("a batch of %.2f s, killed %d times of %d, then continued\n", whole.count(), ended,
@@ -161,6 +167,9 @@ TEST_F(Batch, GoesOnWhereItWasInterrupted) {
   const Outcome last = batch("out");
   EXPECT_EQ(last.status, 0) << last.err;
   EXPECT_EQ(files("out"), wanted);
+  for (const auto& [name, then] : made) {
+    EXPECT_EQ(fs::last_write_time(in_folder("out") / name), then) << name << " is thrown twice";
+  }
 }
 
 TEST_F(Batch, TellsBrokenAndDivergedShotsAndThrowsTheOthers) {

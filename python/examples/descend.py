@@ -5,6 +5,7 @@ dE/dx = alpha * dE/dalpha.
 """
 
 import numpy as np
+import numpy.typing as npt
 import scipy.optimize
 
 import nuno
@@ -18,10 +19,10 @@ backend = nuno.Backend(scene)
 single = nuno.optimize(scene)
 
 
-def error_and_slope(x):
+def error_and_slope(x: npt.NDArray[np.float64]) -> tuple[float, npt.NDArray[np.float64]]:
     alphas = np.exp(x)
     errors, gradients = backend.gradients([alphas])  # one flight, two gains
-    return errors[0], alphas * gradients[0]
+    return float(errors[0]), alphas * gradients[0]
 
 
 start = np.log([single.alpha, single.alpha])

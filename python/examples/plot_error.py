@@ -4,6 +4,7 @@ plot_error.py [PICTURE]: without a picture's name, in a window.
 """
 
 import sys
+from typing import Any
 
 import matplotlib
 
@@ -19,7 +20,7 @@ arch = {
     "initial": [[0, 1], [1, 1]],
     "target": [[3.0, 1.0], [3.2, 1.3], [3.5, 1.4], [3.8, 1.3], [4.0, 1.0]],
 }
-kinds = {  # fields of the scene, and how far the gain goes, in gain scales
+kinds: dict[str, tuple[dict[str, Any], float]] = {  # fields of the scene, and how far the gain goes, in gain scales
     "hold, as in the paper": ({}, 1e3),
     "damped morph": ({"reference": "morph", "damping_ratio": 0.7}, 1e5),
 }

@@ -8,7 +8,7 @@ import pathlib
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Iterable, Mapping, NamedTuple, Sequence, Union
 
-from ._core import DivergedError, InputError, Result, Scene
+from ._core import DivergedError, InputError, OnOneCore, Result, Scene
 from .scenes import PathLike, make_scene, read_scene
 from .searches import optimize, optimization_of
 
@@ -39,7 +39,7 @@ def batch(
 
     `shots` are scenes, their fields as dicts, scene files, and folders of them. `client` is a
     `distributed.Client` of a Dask cluster, whose workers have `nuno` too; without one, `jobs`
-    threads of this machine work, by default as many as it has cores. `search` is what `optimize`
+    threads of this machine work, by default as many as it has cores. Each shot takes one core. `search` is what `optimize`
     takes: backend, error_limit, refine, ...
 
     A shot that is broken or diverges is told in its Shot and does not stop the others. A worker that
@@ -139,7 +139,8 @@ def throw_shot(name: str, scene: Scene | str, search: Mapping[str, Any]) -> Shot
     if isinstance(scene, str):
         return Shot(name, None, "broken", scene)
     try:
-        return Shot(name, optimize(scene, **search), "ok", "")
+        with OnOneCore():  # the others are for other shots
+            return Shot(name, optimize(scene, **search), "ok", "")
     except DivergedError as error:
         return Shot(name, None, "diverged", str(error))
     except InputError as error:

@@ -49,6 +49,24 @@ class Batch(unittest.TestCase):
         (shot,) = nuno.batch([RIGHT], backend="bullet")
         self.assertIn("bullet does not fly a chain", shot.reason)
 
+    def test_takes_one_core_a_shot(self):
+        (scene,) = family(1)
+        scene["time_step"] = 2e-5  # long enough to be looked at
+        counts = set()
+        ended = threading.Event()
+
+        def count_threads():
+            while not ended.wait(0.001):
+                counts.add(len(os.listdir("/proc/self/task")))
+
+        counter = threading.Thread(target=count_threads)
+        counter.start()
+        before = len(os.listdir("/proc/self/task"))
+        nuno.batch([scene], jobs=1)
+        ended.set()
+        counter.join()
+        self.assertLessEqual(max(counts), before + 1)
+
     def test_reads_folders_and_writes_a_summary(self):
         shots = nuno.batch(SCENES / "nuno")
         names = sorted(str(path) for path in (SCENES / "nuno").glob("*.json"))

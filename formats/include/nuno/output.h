@@ -6,6 +6,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace nuno {
 
@@ -47,6 +48,10 @@ void require_writable(const std::string& path);
 /// Has `write` write a file that then takes the place of `path`, whole or not at all: whatever
 /// fails or interrupts leaves what was there. "-" is standard output.
 void write_output(const std::string& path, const std::function<void(std::FILE*)>& write);
+void write_output(const std::string& path, std::string_view text);
+
+/// What `write` writes, as text. Throws std::bad_alloc where it has no room.
+std::string written_text(const std::function<void(std::FILE*)>& write);
 
 /// Throws OutputError if a signal that ends the program came since a file began to be written: it
 /// waits until nothing of the file is left.
