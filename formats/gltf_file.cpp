@@ -13,6 +13,7 @@
 
 #include "compact_json.h"
 #include "gltf_document.h"
+#include "text_file.h"
 
 namespace nuno {
 namespace {
@@ -135,10 +136,10 @@ std::size_t find_target(const GltfItem& mesh, const std::string& name) {
   if (found == names.end()) {
     std::string known = printable(fmt::format("{}", fmt::join(names, ", ")));
     if (known.size() > 200) known = known.substr(0, 197) + "...";
-    mesh.at.refuse(name.empty()
-                       ? fmt::format("has {} morph targets; name one after #: {}", count, known)
-                       : fmt::format("\"{}\" is not one of its morph targets: {}",
-                                     printable(name.substr(0, 60)), known));
+    mesh.at.refuse(
+        name.empty()
+            ? fmt::format("has {} morph targets; name one after #: {}", count, known)
+            : fmt::format("\"{}\" is not one of its morph targets: {}", shown_text(name), known));
   }
   return static_cast<std::size_t>(found - names.begin());
 }

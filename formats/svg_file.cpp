@@ -334,8 +334,10 @@ class SvgReader {
     ++curves_;
     std::string_view name = node.attribute("inkscape:label").value();
     if (name.empty()) name = node.attribute("id").value();
-    if (!name.empty() && names_.size() < 8 && !inherited.is_used)
+    if (!name.empty() && names_.size() < 8 && names_length_ < 120 && !inherited.is_used) {
       names_.push_back(shown_text(name));
+      names_length_ += names_.back().size();
+    }
     if (wanted_.empty() || (has_wanted_name(node) && !inherited.is_used)) {
       own_.add(node, inherited);
     } else if (inherited.is_named) {
@@ -404,7 +406,8 @@ class SvgReader {
   int elements_ = 0;
   int curves_ = 0;                  ///< drawn
   std::vector<std::string> names_;  ///< of the first of them, for messages
-  FoundCurves own_, grouped_;       ///< with the name themselves, or in a group with it
+  std::size_t names_length_ = 0;
+  FoundCurves own_, grouped_;  ///< with the name themselves, or in a group with it
 };
 
 }  // namespace

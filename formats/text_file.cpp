@@ -26,7 +26,12 @@ int digit_of_base64(char c) {
 }  // namespace
 
 std::string shown_text(std::string_view value) {
-  return printable(std::string(value.substr(0, 60)));
+  constexpr std::size_t most = 60;
+  std::string text = printable(std::string(value.substr(0, most)));
+  std::size_t end = std::min(most, text.size());  // what is no UTF-8 has become longer
+  while (end < text.size() && (text[end] & '\xc0') == '\x80') --end;
+  text.resize(end);
+  return text;
 }
 
 std::size_t from_base64(std::string_view text, std::string& bytes) {
