@@ -27,25 +27,37 @@ std::string fragility(double sensitivity) {
       sensitivity);
 }
 
-double step_error(const Backend& finer, const Rollout& flight) {
+void measure_step(const Backend& finer, Rollout& flight) {
   const Rollout there = rollout(finer, flight.gains);
-  if (diverged(there)) return std::numeric_limits<double>::infinity();
+  flight.step_error = flight.finer_strain = std::numeric_limits<double>::infinity();
+  if (diverged(there)) return;
   const Cloth& cloth = finer.cloth();
-  return shape_difference(cloth, flight.final, there.final).mean / cloth.size;
+  flight.step_error = shape_difference(cloth, flight.final, there.final).mean / cloth.size;
+  flight.finer_strain = there.max_strain;
 }
 
-// Second order: half of the step leaves a quarter of the error. A large one is not in proportion
-// yet, and says no more than that the step is too long.
-std::string coarseness(double step_error, double time_step) {
-  if (!(step_error > largest_step_error)) return {};
+std::string coarseness(const Rollout& flight, double time_step) {
+  if (!flight.step_error || !flight.finer_strain) return {};
+  // Second order: half of the step leaves a quarter of the error. A large one is not in proportion
+  // yet, and says no more than that the step is too long.
   constexpr double in_proportion = 0.1;
-  const double halvings = std::max(
-      1.0, std::ceil(std::log2(std::min(step_error, in_proportion) / largest_step_error) / 2));
-  return fmt::format(
-      "coarse: half of the step moves the end shape by {:.2g} % of L; a --time-step "
-      "of {:.2g} s {}",
-      100 * step_error, time_step / std::exp2(halvings),
-      step_error > in_proportion ? "or less is worth a try" : "resolves it");
+  if (const double error = *flight.step_error; error > largest_step_error) {
+    const double halvings = std::max(
+        1.0, std::ceil(std::log2(std::min(error, in_proportion) / largest_step_error) / 2));
+    return fmt::format(
+        "coarse: half of the step moves the end shape by {:.2g} % of L; a --time-step "
+        "of {:.2g} s {}",
+        100 * error, time_step / std::exp2(halvings),
+        error > in_proportion ? "or less is worth a try" : "resolves it");
+  }
+  // Segments that turn by much in a step are stretched by it, wherever they end.
+  if (flight.max_strain > largest_calm_strain && flight.max_strain > 2 * *flight.finer_strain) {
+    return fmt::format(
+        "coarse on the way: half of the step strains it by {:.2g} % only; a "
+        "--time-step of {:.2g} s resolves more",
+        100 * *flight.finer_strain, time_step / 2);
+  }
+  return {};
 }
 
 std::string divergence_message(const std::string& scene_path, const Backend& backend,

@@ -14,10 +14,12 @@ namespace {
 /// The objective on the axes x = log α of the groups, within bounds, counted.
 class LogObjective {
  public:
-  LogObjective(const JointObjective& objective, const JointSearchOptions& options)
+  /// The best single gain, `start` [N/m], is within the bounds as well.
+  LogObjective(const JointObjective& objective, const JointSearchOptions& options, double start)
       : objective_(objective),
+        largest_gain_(std::max(objective.largest_gain, start)),
         lowest_(std::log(options.smallest_gain * objective.gain_scale)),
-        highest_(std::max(lowest_, std::log(objective.largest_gain))) {}
+        highest_(std::max(lowest_, std::log(largest_gain_))) {}
 
   struct Point {
     Vector x;
@@ -27,7 +29,7 @@ class LogObjective {
 
   Gains gains(const Vector& x) const {
     std::vector<double> groups;
-    for (const double each : x) groups.push_back(std::min(std::exp(each), objective_.largest_gain));
+    for (const double each : x) groups.push_back(std::min(std::exp(each), largest_gain_));
     return Gains::of_groups(groups);
   }
   Vector place(const Gains& gains) const {
@@ -89,6 +91,7 @@ class LogObjective {
 
  private:
   const JointObjective& objective_;
+  double largest_gain_;
   double lowest_, highest_;
   Index evaluations_ = 0;
 };
@@ -232,7 +235,7 @@ JointSearchSummary joint_search(const JointObjective& objective, const Evaluatio
   JointSearchSummary summary;
   summary.stages = {{start.gain, start.error}};
   summary.reason = "no gain of its own brings it nearer";
-  LogObjective place(objective, options);
+  LogObjective place(objective, options, start.gain);
   for (Index groups = 2; groups <= options.groups; ++groups) {
     JointStage stage = summary.stages.back();
     if (stage.error <= objective.negligible) break;

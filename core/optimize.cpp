@@ -364,7 +364,7 @@ void search_by_values(const Objective& objective, std::span<const double> gains,
         gains[valley == 0 ? 0 : valley - 1], gains[std::min(valley + 1, gains.size() - 1)], bits,
         iterations);
   }
-  summary.evaluations = counter.count();
+  summary.evaluations += counter.count();
 }
 
 }  // namespace
@@ -388,7 +388,11 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
     if (objective.samples) {
       done = search_with_derivatives(objective, gains, options, summary);
     } else {
-      search_by_values(objective, gains, options, summary);
+      // Each with its own valleys, so that none of the first is lost to the many beyond.
+      const auto first = std::span(gains).first(static_cast<std::size_t>(scan));
+      const auto beyond = std::span(gains).subspan(first.size());
+      search_by_values(objective, first, options, summary);
+      if (!beyond.empty()) search_by_values(objective, beyond, options, summary);
     }
     summary.evaluations += range.evaluations;
     if (!done) summary.status = OptimizeStatus::budget;

@@ -24,7 +24,9 @@ constexpr const char* which_reference = R"(What the control pulls towards is the
   "reference": "morph"   A motion from the initial shape to the target. For all else:
                          nearer, calmer, at a fraction of the force.
   "damping_ratio": 0.7   With "morph": what swings about that motion dies away, and
-                         more gain is less error. 0, the default, is the paper's.
+                         more gain is less error. 0, the default, is the paper's:
+                         E(α) swings, and compare ends at 100 m/t₀², where engines
+                         still agree; optimize goes on from there.
   "arrival": "pass"      With "morph": in full swing, to fly on; the default.
   "arrival": "settle"    With "morph": the shape comes to rest, to be held or to be
                          looked at; takes a little more force.)";

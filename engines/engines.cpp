@@ -205,7 +205,7 @@ JudgedRollout judged_rollout(const Backend& backend, const SceneFile& file, cons
   if (diverged(result.flight)) return result;
   const Backend& flew = result.finer ? *result.finer : backend;
   if (const auto half = at_finer_step(flew, file, 0.5)) {
-    result.flight.step_error = step_error(*half, result.flight);
+    measure_step(*half, result.flight);
   }
   return result;
 }

@@ -73,8 +73,8 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
   const std::string warning = fragility(sensitivity);
   if (!warning.empty()) fmt::print(file, "  {}\n", warning);
   // A fragile flight is another one at any step.
-  if (!warning.empty() || !rollout.step_error) return;
-  const std::string coarse = coarseness(*rollout.step_error, backend.time_step());
+  if (!warning.empty()) return;
+  const std::string coarse = coarseness(rollout, backend.time_step());
   if (!coarse.empty()) fmt::print(file, "  {}\n", coarse);
 }
 

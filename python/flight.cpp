@@ -122,7 +122,7 @@ py::tuple state_of(const Flight& flight) {
       py::make_tuple(rollout.error.mean, rollout.error.max, rollout.error.centroid),
       rollout.control_effort, rollout.max_strain, numbers(rollout.frame_times),
       numbers(flight.frames), flight.sensitivity, flight.optimization, rollout.step_error,
-      correction);
+      correction, rollout.finer_strain);
 }
 
 Flight flight_of_state(const py::tuple& state) {
@@ -149,6 +149,7 @@ Flight flight_of_state(const py::tuple& state) {
   flight.sensitivity = state[12].cast<double>();
   flight.optimization = state[13].cast<std::string>();
   rollout.step_error = state[14].cast<std::optional<double>>();
+  rollout.finer_strain = state[16].cast<std::optional<double>>();
   for (const py::handle shape : state[15].cast<py::list>()) {
     flight.reference_correction.push_back(points_of(shape.cast<Array>(), 0, 0, "a pickled result"));
   }
@@ -204,6 +205,9 @@ void add_numbers(Class& result) {
   result.def_property_readonly(
       "step_error", [](const Flight& self) { return self.rollout.step_error; },
       "How far half of the time step moves the end shape, over L [1]; None where not measured.");
+  result.def_property_readonly(
+      "finer_strain", [](const Flight& self) { return self.rollout.finer_strain; },
+      "`max_strain` with half of the time step [1]; None where not measured.");
   result.def_property_readonly(
       "fragility", [](const Flight& self) { return fragility(self.sensitivity); },
       "The word of warning for a fragile flight; empty for a calm one.");

@@ -12,6 +12,9 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #include <nuno/output.h>
 #include "studio/server.h"
@@ -44,9 +47,18 @@ void open_browser(const std::string& address) {
   posix_spawn_file_actions_destroy(&quiet);
 }
 
+/// Large answers go back to the system once they are sent, and into no store of each thread.
+void keep_little_memory() {
+#ifdef __GLIBC__
+  mallopt(M_ARENA_MAX, 2);
+  mallopt(M_MMAP_THRESHOLD, 256 * 1024);
+#endif
+}
+
 }  // namespace
 
 void serve_studio(const StudioOptions& options) {
+  keep_little_memory();
   studio::Server server(options.port);
   // Nothing to put away: the page keeps its scene by itself.
   std::signal(SIGINT, [](int) { _exit(0); });

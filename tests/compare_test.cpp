@@ -87,12 +87,26 @@ TEST_F(ComparisonOfEngines, HasEveryFieldAndACommonCurve) {
 
 TEST_F(ComparisonOfEngines, FindsOnNativeWhatOptimizeFinds) {
   const fs::path file = two_scenes() / "a.json";
+  Json scene = Json::parse(std::ifstream(file));
+  scene["reference"] = "morph";
+  scene["damping_ratio"] = 0.7;
+  write_text(file, scene.dump());
   const Json comparison = simulated({"compare", file});
   const Json best = simulated({"optimize", file});
   const Json& row = comparison["scenes"][0]["rows"][0];
   EXPECT_EQ(row["alpha"], best["alpha"]);
   EXPECT_EQ(row["error"], best["error"]["mean"]);
   EXPECT_EQ(row["evaluations"], best["optimization"]["evaluations"]);
+}
+
+TEST_F(ComparisonOfEngines, EndsWithoutDampingWhereBothEnginesAreCalm) {
+  const std::string file = scene("s-curve-32");
+  const Json cloth = Json::parse(std::ifstream(file));
+  const double t0 = cloth["arrival_time"];
+  const double mass = cloth["cloth"]["mass"].get<double>() / 32;
+  const Json rows = simulated({"compare", file})["scenes"][0]["rows"];
+  for (const Json& row : rows) EXPECT_LE(row["alpha"], 100.0001 * mass / (t0 * t0));
+  EXPECT_GT(simulated({"optimize", file})["alpha"], 100.0001 * mass / (t0 * t0));
 }
 
 TEST_F(ComparisonOfEngines, ShowsATableOfALineForEachEngine) {

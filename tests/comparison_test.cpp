@@ -202,18 +202,42 @@ TEST(Conditioning, MeasuresWhatHalfTheStepChanges) {
     });
   };
   const double length = problem_of(cross()).cloth().size;
-  const Rollout flight = rollout(engine(1), 0);
-  EXPECT_NEAR(step_error(engine(1.25), flight), 0.25 / length, 1e-14);
-  EXPECT_EQ(step_error(engine(nan), flight), infinity);
+  Rollout flight = rollout(engine(1), 0);
+  measure_step(engine(1.25), flight);
+  EXPECT_NEAR(flight.step_error.value(), 0.25 / length, 1e-14);
+  EXPECT_EQ(flight.finer_strain, rollout(engine(1.25), 0).max_strain);
+  measure_step(engine(nan), flight);
+  EXPECT_EQ(flight.step_error, infinity);
+  EXPECT_EQ(flight.finer_strain, infinity);
 }
 
 TEST(Conditioning, SaysWhichStepResolvesACoarseFlight) {
-  EXPECT_EQ(coarseness(1e-3, 0.01), "");
-  EXPECT_EQ(coarseness(nan, 0.01), "");
-  EXPECT_NE(coarseness(0.004, 0.01).find("0.4 % of L; a --time-step of 0.005 s resolves it"),
+  const auto words = [](double step_error) {
+    Rollout flight;
+    flight.step_error = step_error;
+    flight.finer_strain = 0;
+    return coarseness(flight, 0.01);
+  };
+  EXPECT_EQ(words(1e-3), "");
+  EXPECT_EQ(words(nan), "");
+  EXPECT_NE(words(0.004).find("0.4 % of L; a --time-step of 0.005 s resolves it"),
             std::string::npos);
-  EXPECT_NE(coarseness(0.016, 0.01).find("of 0.0025 s resolves it"), std::string::npos);
-  EXPECT_NE(coarseness(infinity, 0.01).find("or less is worth a try"), std::string::npos);
+  EXPECT_NE(words(0.016).find("of 0.0025 s resolves it"), std::string::npos);
+  EXPECT_NE(words(infinity).find("or less is worth a try"), std::string::npos);
+  EXPECT_EQ(coarseness({}, 0.01), "") << "not measured";
+}
+
+TEST(Conditioning, SaysThatAStrainOnTheWayIsTheSteps) {
+  const auto words = [](double strain, double finer) {
+    Rollout flight;
+    flight.step_error = 0;
+    flight.max_strain = strain;
+    flight.finer_strain = finer;
+    return coarseness(flight, 0.01);
+  };
+  EXPECT_EQ(words(0.005, 0), "") << "too little to care";
+  EXPECT_EQ(words(0.02, 0.01), "") << "the cloth's own";
+  EXPECT_NE(words(0.021, 0.01).find("by 1 % only; a --time-step of 0.005 s"), std::string::npos);
 }
 
 TEST(Conditioning, TellsWhereAndWhyARolloutDiverged) {

@@ -85,7 +85,8 @@ TEST_F(Result, HasEveryFieldAndNoNull) {
       "nuno_result",    "scene",       "backend",         "status",       "alpha",
       "time_step",      "steps",       "cloth_length",    "target_scale", "error",
       "control_effort", "final",       "launch_velocity", "target",       "frames",
-      "max_strain",     "sensitivity", "final_velocity",  "step_error",   "input"};
+      "max_strain",     "sensitivity", "final_velocity",  "step_error",   "finer_strain",
+      "input"};
   std::set<std::string> fields;
   for (const auto& item : result.items()) fields.insert(item.key());
   EXPECT_EQ(fields, expected);

@@ -26,13 +26,14 @@ double bounded_sensitivity(const Backend& backend, const Rollout& flight);
 /// The words for a sensitivity above 10; empty for a calm flight.
 std::string fragility(double sensitivity);
 
-/// How far a flight's end shape is from that of the same flight on `finer`, the same engine at half
-/// of its step: mean distance with the mass centres aligned, over L; +∞ where it diverges there.
-double step_error(const Backend& finer, const Rollout& flight);
+/// Measures a flight's step against the same flight on `finer`, the same engine at half of it. Its
+/// step_error is how far the end shapes are apart: mean distance with the mass centres aligned,
+/// over L. Both numbers are +∞ where it diverges there.
+void measure_step(const Backend& finer, Rollout& flight);
 
-/// The words for a step error of a flight in such steps [s], and the step to take instead; empty
-/// for a flight that is resolved.
-std::string coarseness(double step_error, double time_step);
+/// The words for a flight in such steps [s] whose end shape, or whose strain on the way, is the
+/// step's own, and the step to take instead; empty for one that is resolved, or not measured.
+std::string coarseness(const Rollout& flight, double time_step);
 
 /// At which step a rollout diverged and why.
 std::string divergence_message(const std::string& scene_path, const Backend& backend,

@@ -31,6 +31,7 @@ struct Rollout {
   double control_effort = 0;  ///< rms over particles and time of control force / particle weight
   double max_strain = 0;      ///< largest |l/ℓ − 1| of an edge on the way
   std::optional<double> step_error;     ///< where it was measured, see conditioning.h [1]
+  std::optional<double> finer_strain;   ///< max_strain with half of the step, measured beside it
   std::vector<double> frame_times;      ///< [s]
   std::vector<Points> frame_positions;  ///< [d × N] each, m
   /// Of the step that ends at the frame or after it, of the first frame's the first one's; 0 after
