@@ -38,8 +38,10 @@ std::optional<Evaluation> lower_minimum(const Backend& backend, const Objective&
                                         double error) {
   const double last =
       std::min(GlobalSearchOptions().largest_gain * objective.gain_scale, objective.largest_gain);
-  std::vector<double> gains;
-  for (int i = 0; i < 2000; ++i) gains.push_back(last * std::pow(i / 1999.0, 2));
+  std::vector<double> gains(2000);
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    gains[i] = last * std::pow(static_cast<double>(i) / 1999, 2);
+  }
   const std::vector<double> errors = objective.errors(gains);
   std::optional<Evaluation> lowest;
   for (std::size_t i = 1; i + 1 < gains.size(); ++i) {

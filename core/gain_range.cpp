@@ -59,7 +59,8 @@ GainRange gain_range(const Objective& objective, double largest) {
   range.evaluations = objective.samples ? count : 2 * count;
   // One alone may be a fold on the way.
   const std::array two_in_a_row = {true, true};
-  const auto begin = std::ranges::search(noise, two_in_a_row).begin();
+  const auto begin =
+      std::search(noise.begin(), noise.end(), two_in_a_row.begin(), two_in_a_row.end());
   if (begin == noise.end()) return range;
   const auto first = static_cast<std::size_t>(begin - noise.begin());
   range.calm = first == 0 ? calm : gains[first - 1];
