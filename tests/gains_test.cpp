@@ -280,11 +280,11 @@ TEST(JointSearch, IsNeverWorseThanTheStageBefore) {
   }
 }
 
-TEST(JointSearch, HalvesTheErrorOfTheSCurveWithASecondGain) {
+TEST(JointSearch, TakesAThirdOfTheErrorOfTheSCurveWithASecondGain) {
   const auto backend = native::make_backend(hold_problem());
   const OptimizeSummary one = global_search(objective(*backend));
   const JointSearchSummary found = joint_search(joint_objective(*backend), {one.gain, one.error});
-  EXPECT_LT(found.stages[1].error, 0.6 * one.error);  // see docs/coefficients.md
+  EXPECT_LT(found.stages[1].error, 0.7 * one.error);  // see docs/coefficients.md
 }
 
 TEST(JointSearch, DoesWithoutGradients) {
