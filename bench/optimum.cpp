@@ -196,10 +196,15 @@ void growth(Report& report, int repetitions) {
   std::vector<std::unique_ptr<Backend>> small, large;
   for (ChainScene& scene : scenes) {
     scene.particles = 64;
-    large.push_back(native::make_backend(make_problem(scene)));
+    const Problem fine = make_problem(scene);
     scene.particles = 32;
-    small.push_back(
-        native::make_backend(with_time_step(make_problem(scene), large.back()->time_step())));
+    const Problem coarse = make_problem(scene);
+    large.push_back(native::make_backend(fine));
+    small.push_back(native::make_backend(with_time_step(coarse, large.back()->time_step())));
+    // The few may take more steps than they are asked for: then the many do as well.
+    if (small.back()->steps() != large.back()->steps()) {
+      large.back() = native::make_backend(with_time_step(fine, small.back()->time_step()));
+    }
     report.check(small.back()->steps() == large.back()->steps(),
                  fmt::format("{}: 32 and 64 particles fly in the same {} steps", scene.name,
                              large.back()->steps()));
