@@ -14,6 +14,7 @@
 #include <optional>
 #include <utility>
 
+#include "gain_range.h"
 #include "refinement.h"
 #include "trust_region.h"
 
@@ -318,8 +319,8 @@ void conclude(RefineSummary& summary, double tolerance, double effort_limit) {
 double tracking_gain(const Backend& backend) {
   // √300 = 17 rad until arrival: what the launch leaves behind has died away by then, and nothing
   // that the engines see differently grows. Without damping, nothing does up to 10 rad.
-  const double gain_scales = backend.problem().damping_ratio < 0.5 ? 100 : 300;
   const Objective range = objective(backend);
+  const double gain_scales = swings(range) ? calm_gain_scales : 300;
   return std::min(gain_scales * range.gain_scale, range.largest_gain);
 }
 

@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before } from 'node:test';
 import { obj_text, square_mesh } from './square_mesh.mjs';
-import { patience, start_studio, webgl_in_software } from './studio_server.mjs';
+import { open_page, patience, start_studio, webgl_in_software } from './studio_server.mjs';
 
 export const sheets = path.join(process.env.NUNO_SCENES, 'sheets');
 export const folder = mkdtempSync(path.join(tmpdir(), 'nuno-sheet-test-'));
@@ -25,11 +25,7 @@ after(async () => {
 });
 
 export async function new_page(options) {
-  const context = await studio.browser.newContext({ acceptDownloads: true, ...options });
-  const made = await context.newPage();
-  made.setDefaultTimeout(patience);
-  made.on('pageerror', (error) => page_errors.push(error.message));
-  await made.goto(studio.url);
+  const made = await open_page(studio, options, page_errors);
   await settled(made);
   return made;
 }

@@ -5,7 +5,7 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { after, before } from 'node:test';
-import { patience, program, start_studio } from './studio_server.mjs';
+import { open_page, patience, program, start_studio } from './studio_server.mjs';
 
 export { patience, program };
 export const folder = mkdtempSync(path.join(tmpdir(), 'nuno-studio-test-'));
@@ -24,11 +24,7 @@ after(async () => {
 });
 
 export async function new_page(options) {
-  const context = await studio.browser.newContext({ acceptDownloads: true, ...options });
-  const made = await context.newPage();
-  made.setDefaultTimeout(patience);
-  made.on('pageerror', (error) => page_errors.push(error.message));
-  await made.goto(studio.url);
+  const made = await open_page(studio, options, page_errors);
   await settled(made);
   // The paper's control, and not landed exactly: a link that does not ask for it.
   const paper = await made.evaluate(() => ({ ...nuno_studio.app.doc.scene, reference: 'hold', damping_ratio: 0 }));

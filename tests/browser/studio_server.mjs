@@ -30,3 +30,13 @@ export async function start_studio(more = []) {
   };
   return { url, browser, end };
 }
+
+// A page of its own before a studio, once it is ready; its errors are added to `page_errors`.
+export async function open_page(studio, options, page_errors) {
+  const context = await studio.browser.newContext({ acceptDownloads: true, ...options });
+  const made = await context.newPage();
+  made.setDefaultTimeout(patience);
+  made.on('pageerror', (error) => page_errors.push(error.message));
+  await made.goto(studio.url);
+  return made;
+}
