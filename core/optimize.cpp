@@ -1,5 +1,6 @@
 #include <nuno/optimize.h>
 
+#include "derivative_search.h"
 #include "gain_range.h"
 
 #include <fmt/format.h>
@@ -9,7 +10,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <list>
 // Boost 1.74's header needs it and does not include it.
 #include <boost/math/tools/minima.hpp>
 #include <cstdint>
@@ -164,148 +164,6 @@ std::vector<double> scan_gains(const Objective& objective, const GlobalSearchOpt
   return gains;
 }
 
-// ---- refinement where the objective knows its derivatives: all valleys at once, a batch a round
-
-/// One gain on the axis u = √α, along which the arrival swings evenly.
-struct Knot {
-  double u = 0;
-  double speed = 0;    ///< see swing_speed
-  ErrorSample sample;  ///< of error ∞ where the flight diverged or E is noise
-};
-
-/// Between two knots every particle arrives on a smooth path, taken for the cubic through its ends
-/// and their derivatives. E, the mean distance from the target, is not so smooth, and is read off
-/// those paths.
-struct Bracket {
-  const Knot* left;
-  const Knot* right;
-  double minimum = 0;      ///< where the error on the paths is least [u]
-  double prediction = 0;   ///< that error [m]
-  double lower_bound = 0;  ///< the prediction less what the last one nearby was off [m]
-
-  Bracket(const Knot& from, const Knot& to, double model_error) : left(&from), right(&to) {
-    constexpr int cells = 8;
-    double least = std::numeric_limits<double>::infinity();
-    int cell = 0;
-    for (int i = 0; i <= cells; ++i) {
-      const double error = error_at(static_cast<double>(i) / cells);
-      if (error < least) {
-        least = error;
-        cell = i;
-      }
-    }
-    const double low = std::max(cell - 1, 0), high = std::min(cell + 1, cells);
-    const auto [s, error] = boost::math::tools::brent_find_minima(
-        [this](double at) { return error_at(at); }, low / cells, high / cells, 14);
-    minimum = std::lerp(left->u, right->u, std::clamp(s, 1e-4, 1 - 1e-4));
-    prediction = error;
-    lower_bound = error - model_error;
-  }
-
-  double width() const { return right->u - left->u; }
-
- private:
-  double error_at(double s) const {
-    const double t = 1 - s;
-    const double from = t * t * (1 + 2 * s), to = s * s * (1 + 2 * t);
-    // d/du = 2u·d/dα
-    const double leaving = 2 * left->u * s * t * t * width();
-    const double arriving = -2 * right->u * s * s * t * width();
-    return (from * left->sample.residual + to * right->sample.residual +
-            leaving * left->sample.derivatives.front().residual +
-            arriving * right->sample.derivatives.front().residual)
-        .colwise()
-        .norm()
-        .mean();
-  }
-};
-
-/// The gains halfway between knots, which ascend, that are so far apart that a cubic does not know
-/// the arrivals between them.
-std::vector<double> unresolved_gains(const Objective& objective, const std::list<Knot>& knots) {
-  constexpr double farthest = 0.25;  // that the arrival may move from one to the next, over L
-  std::vector<double> gains;
-  for (auto right = std::next(knots.begin()); right != knots.end(); ++right) {
-    const auto left = std::prev(right);
-    const double phase = (right->u - left->u) / std::sqrt(objective.gain_scale);
-    const bool known = std::isfinite(left->sample.error) || std::isfinite(right->sample.error);
-    if (known && phase * std::max(left->speed, right->speed) > farthest) {
-      gains.push_back(std::pow(0.5 * (left->u + right->u), 2));
-    }
-  }
-  return gains;
-}
-
-/// Searches between `gains`, which ascend. Whether it came to an end before the rounds ran out.
-bool search_with_derivatives(const Objective& objective, std::span<const double> gains,
-                             const GlobalSearchOptions& options, OptimizeSummary& summary) {
-  const double calm =
-      swings(objective) ? calm_gain_scales * objective.gain_scale : objective.largest_gain;
-  double best = std::numeric_limits<double>::infinity();
-  const auto sample = [&](std::span<const double> at) {
-    std::vector<ErrorSample> samples = objective.samples(at);
-    summary.evaluations += static_cast<Index>(at.size());
-    std::vector<Knot> knots;
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      const double speed = swing_speed(objective, at[i], samples[i]);
-      if (at[i] > calm && speed > 1) {
-        samples[i].error = std::numeric_limits<double>::infinity();
-      } else {
-        summary.history.push_back({at[i], samples[i].error});
-      }
-      best = std::min(best, samples[i].error);
-      knots.push_back({std::sqrt(at[i]), speed, std::move(samples[i])});
-    }
-    return knots;
-  };
-  std::list<Knot> knots;
-  std::vector<Bracket> brackets;
-  const auto add_bracket = [&](const Knot& left, const Knot& right, double model_error) {
-    // From gain 0 on, the derivative along u of damped control is not u's own.
-    if (left.u == 0 || right.u - left.u < options.gain_tolerance * right.u) return;
-    if (std::isfinite(left.sample.error) && std::isfinite(right.sample.error)) {
-      brackets.emplace_back(left, right, model_error);
-    }
-  };
-
-  for (Knot& knot : sample(gains)) knots.push_back(std::move(knot));
-  if (swings(objective)) {
-    for (int halving = 0; halving < 3; ++halving) {
-      std::vector<Knot> between = sample(unresolved_gains(objective, knots));
-      knots.insert(knots.end(), std::make_move_iterator(between.begin()),
-                   std::make_move_iterator(between.end()));
-      knots.sort([](const Knot& a, const Knot& b) { return a.u < b.u; });
-    }
-  }
-  for (auto right = std::next(knots.begin()); right != knots.end(); ++right) {
-    add_bracket(*std::prev(right), *right, 0);
-  }
-  // Every round goes on in the brackets whose lower bound is least.
-  for (Index round = 0; round < options.rounds; ++round) {
-    std::ranges::sort(brackets, {}, [](const Bracket& b) { return b.lower_bound; });
-    const std::size_t refined =
-        std::min(brackets.size(), static_cast<std::size_t>(options.brackets));
-    const double wanted = std::max(best * (1 - options.error_tolerance), objective.negligible);
-    if (refined == 0 || best <= objective.negligible || brackets[0].lower_bound > wanted) {
-      return true;
-    }
-    std::vector<double> candidates;
-    candidates.reserve(refined);
-    const auto unrefined = brackets.begin() + static_cast<std::ptrdiff_t>(refined);
-    const std::vector<Bracket> split(brackets.begin(), unrefined);
-    brackets.erase(brackets.begin(), unrefined);
-    for (const Bracket& bracket : split) candidates.push_back(std::pow(bracket.minimum, 2));
-    std::vector<Knot> found = sample(candidates);
-    for (std::size_t i = 0; i < refined; ++i) {
-      const Knot& middle = knots.emplace_back(std::move(found[i]));
-      const double model_error = 0.5 * std::abs(middle.sample.error - split[i].prediction);
-      add_bracket(*split[i].left, middle, model_error);
-      add_bracket(middle, *split[i].right, model_error);
-    }
-  }
-  return brackets.empty();
-}
-
 /// Eight gains about one, a batch: its valley, if little has changed.
 std::vector<double> gains_around(const Objective& objective, double gain) {
   std::vector<double> gains;
@@ -381,8 +239,10 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
     // Samples tell noise from the rest.
     largest = objective.samples ? range.largest : range.calm;
     why_largest = range.why;
-    const auto [scan, apart] =
-        objective.samples ? std::pair(options.scan, 1.0) : std::pair(3 * options.scan, 0.5);
+    // Where it swings, the search with derivatives halves gaps that it cannot see through.
+    const auto [scan, apart] = !objective.samples  ? std::pair(3 * options.scan, 0.5)
+                               : swings(objective) ? std::pair(options.scan / 2, 2.0)
+                                                   : std::pair(options.scan, 2.0);
     const std::vector<double> gains = scan_gains(objective, options, largest, scan, apart);
     bool done = true;
     if (objective.samples) {

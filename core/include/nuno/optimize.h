@@ -85,8 +85,9 @@ OptimizeSummary steepest_descent(const Objective& objective,
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;  ///< of the scan, in gain scales, > 0
   double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's range
-  /// Gains of the scan, 0 among them, ≥ 4; thrice as many by values. Where control is not damped,
-  /// they end at 100 gain scales and others follow, a radian of phase apart; by values, half of it.
+  /// Gains of the scan, 0 among them, ≥ 4. Where control is not damped, half as many end at 100 gain
+  /// scales and others follow, two radians of phase apart, nearer where the arrivals part. By
+  /// values, thrice as many, and half a radian apart.
   Index scan = 24;
   Index brackets = 8;             ///< refined in a round (by values: valleys in all), ≥ 1
   Index rounds = 12;              ///< of refinement at most, ≥ 1; by values, a rollout each
