@@ -37,7 +37,7 @@ void fly_along_lanes(const ChainPlan& plan, const RolloutState& start, double ga
   const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<Derivatives>[]> correction(new Vec2<Derivatives>[size]);
-  const Scratch<T> scratch(plan);
+  const OwnScratch<T> scratch(plan);
   // A value of each direction, a direction a lane.
   const auto across = [&](auto value_of) NUNO_INLINE_LAMBDA {
     double values[most_derivatives] = {};
@@ -83,7 +83,7 @@ void fly_along_lanes(const ChainPlan& plan, const RolloutState& start, double ga
     const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
     const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
     sums = advance<damped_control>(
-        plan, step == 0, x.get(), v.get(), scratch.segments.get(), scratch.stiff_segments.get(),
+        plan, step == 0, x.get(), v.get(), Scratch<T>(scratch),
         [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
           const Vec2<T> place{with_derivatives(shape[2 * j], share * correction[j].x),
                               with_derivatives(shape[2 * j + 1], share * correction[j].y)};

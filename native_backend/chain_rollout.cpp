@@ -24,10 +24,13 @@ void step_scalar(const ChainPlan& plan, bool first, const double* forces, double
   static_assert(sizeof(Vec2<Real>) == 2 * sizeof(double) &&
                 sizeof(Segment<Real>) == 4 * sizeof(double) &&
                 sizeof(StiffSegment<Real>) == 12 * sizeof(double));
+  double* values = scratch.values.data();
+  const Scratch<Real> parts =
+      plan.implicit_hinges
+          ? Scratch<Real>{.stiff_segments = reinterpret_cast<StiffSegment<Real>*>(values)}
+          : Scratch<Real>{.segments = reinterpret_cast<Segment<Real>*>(values)};
   advance<false>(plan, first, reinterpret_cast<Vec2<Real>*>(positions),
-                 reinterpret_cast<Vec2<Real>*>(velocities),
-                 reinterpret_cast<Segment<Real>*>(scratch.values.data()),
-                 reinterpret_cast<StiffSegment<Real>*>(scratch.values.data()),
+                 reinterpret_cast<Vec2<Real>*>(velocities), parts,
                  [forces](Index j, const Vec2<Real>&, const Vec2<Real>&) NUNO_INLINE_LAMBDA {
                    return Vec2<Real>{forces[2 * j], forces[2 * j + 1]};
                  });
@@ -60,7 +63,7 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
   const auto size = static_cast<std::size_t>(n);
   const std::unique_ptr<Vec2<T>[]> x(new Vec2<T>[size]);
   const std::unique_ptr<Vec2<T>[]> v(new Vec2<T>[size]);
-  const Scratch<T> scratch(plan);
+  const OwnScratch<T> scratch(plan);
   const T zero = Constant<T>::of(0);
   Sums<T> sums{{zero, zero}, {zero, zero}};
   for (Index i = n; i-- > 0;) {
@@ -93,14 +96,16 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
           n, {zero, zero}, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
           [&](Index j) NUNO_INLINE_LAMBDA { return lag(j, v[j]); });
     }
-    sums = advance<damped_control>(
-        plan, step == 0, x.get(), v.get(), scratch.segments.get(), scratch.stiff_segments.get(),
-        [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
-          Vec2<T> force = gain * offset(j, position);
-          if constexpr (damped_control) force = force + damping * lag(j, velocity);
-          if constexpr (control == Control::grouped) force = low_modes.add_to(force, j);
-          return force;
-        });
+    sums = advance<damped_control>(plan, step == 0, x.get(), v.get(), Scratch<T>(scratch),
+                                   [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity)
+                                       NUNO_INLINE_LAMBDA {
+                                         Vec2<T> force = gain * offset(j, position);
+                                         if constexpr (damped_control)
+                                           force = force + damping * lag(j, velocity);
+                                         if constexpr (control == Control::grouped)
+                                           force = low_modes.add_to(force, j);
+                                         return force;
+                                       });
     reference.advance();
   }
   const Index count = gains.flights();

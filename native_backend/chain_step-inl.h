@@ -147,61 +147,89 @@ HWY_INLINE void go_up(const ChainPlan& plan, const ChainPlan::Kick& kick, const 
   eliminate(n - 2, zero);
 }
 
-/// On the way down: substitutes, adds the tensions to the kick and moves.
+/// Moves a particle with its new velocity and adds it to the sums, which begin with the last one.
 template <bool damped_control, typename T>
-HWY_INLINE Sums<T> go_down(const ChainPlan& plan, Vec2<T>* x, Vec2<T>* v,
-                           const Segment<T>* segments) {
+HWY_INLINE void move(const ChainPlan& plan, Index i, Vec2<T> velocity, Vec2<T>* x, Vec2<T>* v,
+                     Sums<T>& sums) {
+  v[i] = velocity;
+  x[i] = {scale_add(plan.h, velocity.x, x[i].x), scale_add(plan.h, velocity.y, x[i].y)};
+  sums.position = sums.position + x[i];
+  if constexpr (damped_control) sums.velocity = sums.velocity + velocity;
+}
+
+/// On the way down: substitutes, adds the tensions to the kick and moves through `set(i, v')`.
+template <typename T, typename Set>
+HWY_INLINE void go_down(const ChainPlan& plan, const Vec2<T>* v, const Segment<T>* segments,
+                        Set&& set) {
   const T zero = Constant<T>::of(0);
-  Sums<T> sums{{zero, zero}, {zero, zero}};
   Vec2<T> pulled = v[plan.particles - 1];  // by the segment above
   T tension = zero;                        // τ
-  const auto move = [&](Index i, Vec2<T> velocity) NUNO_INLINE_LAMBDA {
-    v[i] = velocity;
-    x[i] = {scale_add(plan.h, velocity.x, x[i].x), scale_add(plan.h, velocity.y, x[i].y)};
-    sums.position = sums.position + x[i];
-    if constexpr (damped_control) sums.velocity = sums.velocity + velocity;
-  };
   for (Index i = plan.particles - 1; i-- > 0;) {
     const Segment<T> s = segments[i];
     tension = mul_add(s.factor, tension, s.offset);
-    move(i + 1, {neg_mul_add(tension, s.direction.x, pulled.x),
-                 neg_mul_add(tension, s.direction.y, pulled.y)});
+    set(i + 1, {neg_mul_add(tension, s.direction.x, pulled.x),
+                neg_mul_add(tension, s.direction.y, pulled.y)});
     pulled = {mul_add(tension, s.direction.x, v[i].x), mul_add(tension, s.direction.y, v[i].y)};
   }
-  move(0, pulled);
-  return sums;
+  set(0, pulled);
 }
 
-/// What a step works on besides the state.
+/// What a step works on besides the state: of explicit hinges or of implicit ones.
 template <typename T>
-class Scratch {
- public:
-  explicit Scratch(const ChainPlan& plan)
-      : segments(
-            new Segment<T>[static_cast<std::size_t>(plan.implicit_hinges ? 0 : plan.particles)]),
-        stiff_segments(new StiffSegment<T>[static_cast<std::size_t>(
-            plan.implicit_hinges ? plan.particles : 0)]) {}
+struct Scratch {
+  Segment<T>* segments = nullptr;
+  StiffSegment<T>* stiff_segments = nullptr;
+  StiffTangent<T>* tangents = nullptr;
+};
 
-  const std::unique_ptr<Segment<T>[]> segments;
-  const std::unique_ptr<StiffSegment<T>[]> stiff_segments;
+template <typename T>
+class OwnScratch {
+ public:
+  explicit OwnScratch(const ChainPlan& plan) {
+    const auto size = static_cast<std::size_t>(plan.particles);
+    if (!plan.implicit_hinges) {
+      segments_.reset(new Segment<T>[size]);
+    } else {
+      stiff_segments_.reset(new StiffSegment<T>[size]);
+      if constexpr (has_derivative<T>) tangents_.reset(new StiffTangent<T>[size]);
+    }
+  }
+  operator Scratch<T>() const { return {segments_.get(), stiff_segments_.get(), tangents_.get()}; }
+
+ private:
+  std::unique_ptr<Segment<T>[]> segments_;
+  std::unique_ptr<StiffSegment<T>[]> stiff_segments_;
+  std::unique_ptr<StiffTangent<T>[]> tangents_;
 };
 
 /// One step. `external(j, x, v)` is the force on particle j; returns the sums after the step.
 template <bool damped_control, typename T, typename External>
 HWY_INLINE Sums<T> advance(const ChainPlan& plan, bool first, Vec2<T>* x, Vec2<T>* v,
-                           Segment<T>* segments, StiffSegment<T>* stiff_segments,
-                           External&& external) {
+                           const Scratch<T>& scratch, External&& external) {
   const ChainPlan::Kick& kick = first ? plan.first : plan.full;
+  const T zero = Constant<T>::of(0);
+  Sums<T> sums{{zero, zero}, {zero, zero}};
+  const auto set = [&](Index i, Vec2<T> velocity)
+                       NUNO_INLINE_LAMBDA { move<damped_control>(plan, i, velocity, x, v, sums); };
   if (plan.implicit_hinges) {
-    go_up_stiff(plan, kick, x, v, stiff_segments, external);
-    return go_down_stiff<damped_control>(plan, x, v, stiff_segments);
+    go_up_stiff(plan, kick, x, v, scratch.stiff_segments, scratch.tangents, external);
+    if constexpr (has_derivative<T>) {
+      go_down_stiff(plan, v, scratch.stiff_segments,
+                    [&](Index i, Vec2<T> velocity) NUNO_INLINE_LAMBDA { v[i] = velocity; });
+      solve_tangents(plan, v, scratch.stiff_segments, scratch.tangents);
+      for (Index i = plan.particles; i-- > 0;) set(i, v[i]);
+    } else {
+      go_down_stiff(plan, v, scratch.stiff_segments, set);
+    }
+    return sums;
   }
   if (plan.hinge_dashpot.empty()) {
-    go_up<false>(plan, kick, x, v, segments, external);
+    go_up<false>(plan, kick, x, v, scratch.segments, external);
   } else {
-    go_up<true>(plan, kick, x, v, segments, external);
+    go_up<true>(plan, kick, x, v, scratch.segments, external);
   }
-  return go_down<damped_control>(plan, x, v, segments);
+  go_down(plan, v, scratch.segments, set);
+  return sums;
 }
 
 }  // namespace HWY_NAMESPACE

@@ -16,7 +16,8 @@
 //     Mᵢ:  Pᵢ₋₁ (Mᵢ₋₂),  −Iᵢ₋₁·Sᵢ₋₁ (Tᵢ₋₂),  −2Iᵢ₋₁² − Pᵢ₋₁ − Pᵢ (Mᵢ₋₁),  Iᵢ·Sᵢ (Tᵢ₋₁)
 //     Tᵢ:                 −Iᵢ₋₁·Sᵢ (Mᵢ₋₁),       −Cᵢ (Tᵢ₋₁),               Iᵢ₋₁·Sᵢ (Mᵢ)
 // and the diagonals 2(Iᵢ² + Iᵢ₋₁² + Pᵢ) and 2 more than 1/(p·c⁺). It is factored as L·D·Lᵀ on the
-// way up the chain and substituted on the way down, a chain's length in time.
+// way up the chain and substituted on the way down, a chain's length in time. Derivatives take the
+// same factors once more.
 
 #if defined(NUNO_IMPLICIT_HINGES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef NUNO_IMPLICIT_HINGES_INL_H_
@@ -47,10 +48,21 @@ struct TensionRow {
 /// A segment and the hinge at its lower end, on the way up.
 template <typename T>
 struct StiffSegment {
+  using Value = typename Constant<T>::Value;
   Vec2<T> direction;
   T inverse;  ///< Iᵢ
-  MomentRow<T> moment;
-  TensionRow<T> tension;
+  MomentRow<Value> moment;
+  TensionRow<Value> tension;
+};
+
+/// What their derivatives need besides: nothing where there are none.
+template <typename T>
+struct StiffTangent {};
+template <typename T, typename S>
+struct StiffTangent<Dual<T, S>> {
+  T moment_inverse, tension_inverse;  ///< 1/D
+  S moment,
+      tension;  ///< first what the right side has of old velocities; then see MomentRow::value
 };
 
 /// What the elimination of a row needs of the two blocks below.
@@ -129,18 +141,22 @@ HWY_INLINE void eliminate_tension(const HingeEntries<T>& hinge, T lower, double 
 /// On the way up: kicks with the external forces and eliminates tensions and moments.
 template <typename T, typename External>
 HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, const Vec2<T>* x,
-                            Vec2<T>* v, StiffSegment<T>* segments, External&& external) {
+                            Vec2<T>* v, StiffSegment<T>* segments, StiffTangent<T>* tangents,
+                            External&& external) {
+  using Value = typename Constant<T>::Value;
   const Index n = plan.particles;
   const T zero = Constant<T>::of(0);
+  const Value none = Constant<Value>::of(0);
   const auto kick_particle = [&](Index i) NUNO_INLINE_LAMBDA {
     const Vec2<T> force = external(i, x[i], v[i]);
     v[i] = {scale_add(kick.force, force.x, scale(kick.keep, v[i].x)),
             scale_add(kick.force, force.y, shift(-kick.fall, scale(kick.keep, v[i].y)))};
   };
-  Eliminated<T> two_below = Eliminated<T>::nothing(), one_below = two_below;
-  HingeEntries<T> hinge_below{zero, zero, zero, zero};
+  Eliminated<Value> two_below = Eliminated<Value>::nothing(), one_below = two_below;
+  HingeEntries<Value> hinge_below{none, none, none, none};
   Vec2<T> direction_below{zero, zero};
-  T spin_below = zero, turn_below = zero;  // φ̇ of the old and of the kicked velocities
+  T spin_below = zero;      // φ̇ of the old velocities,
+  Value turn_below = none;  // of the kicked ones
   Vec2<T> old_below = v[0];
   kick_particle(0);
   for (Index i = 0; i + 1 < n; ++i) {
@@ -151,22 +167,29 @@ HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, 
     const Vec2<T> t = inverse * span;
     const T spin = cross(t, rate) * inverse;
     kick_particle(i + 1);
-    const Vec2<T> kicked = v[i + 1] - v[i];
-    const T turn = cross(t, kicked) * inverse;
-    const T strain = scale_add(
-        kick.strain, shift(-plan.rest_length[static_cast<std::size_t>(i)], squared * inverse),
-        scale_add(kick.rate, dot(t, rate), dot(t, kicked)));
+    const Vec2<Value> kicked = value_of(v[i + 1]) - value_of(v[i]);
+    const Value turn = cross(value_of(t), kicked) * value_of(inverse);
+    const T stretch = shift(-plan.rest_length[static_cast<std::size_t>(i)], squared * inverse);
+    const T stretching = dot(t, rate);
+    const Value strain =
+        scale_add(kick.strain, value_of(stretch),
+                  scale_add(kick.rate, value_of(stretching), dot(value_of(t), kicked)));
 
-    const T cosine = dot(direction_below, t);
-    const HingeEntries<T> hinge{cosine, cross(direction_below, t),
-                                cosine * inverse * hinge_below.inverse, inverse};
-    Eliminated<T> row = Eliminated<T>::nothing();
+    const T cosine = dot(direction_below, t), sine = cross(direction_below, t);
+    const HingeEntries<Value> hinge{value_of(cosine), value_of(sine),
+                                    value_of(cosine) * value_of(inverse) * hinge_below.inverse,
+                                    value_of(inverse)};
+    Eliminated<Value> row = Eliminated<Value>::nothing();
+    T bend = zero, bending = zero;
     if (i > 0) {
-      const T bend = scale_add(kick.hinge_strain, angle(hinge.sine, cosine),
-                               scale_add(kick.hinge_rate, spin - spin_below, turn - turn_below));
+      bend = angle(sine, cosine);
+      bending = spin - spin_below;
+      const Value right =
+          scale_add(kick.hinge_strain, value_of(bend),
+                    scale_add(kick.hinge_rate, value_of(bending), turn - turn_below));
       eliminate_moment(hinge, hinge_below,
                        kick.hinge_compliance * plan.hinge_length[static_cast<std::size_t>(i - 1)],
-                       bend, two_below, one_below, row);
+                       right, two_below, one_below, row);
     }
     eliminate_tension(hinge, hinge_below.inverse,
                       kick.compliance * plan.rest_length[static_cast<std::size_t>(i)], strain,
@@ -175,6 +198,11 @@ HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, 
     s = {t, inverse, row.moment, row.tension};
     s.moment.value = row.moment.value * row.moment_inverse;
     s.tension.value = row.tension.value * row.tension_inverse;
+    if constexpr (has_derivative<T>) {
+      tangents[i] = {row.moment_inverse, row.tension_inverse,
+                     scale_add(kick.hinge_strain, bend, scale(kick.hinge_rate, bending)).derivative,
+                     scale_add(kick.strain, stretch, scale(kick.rate, stretching)).derivative};
+    }
 
     two_below = one_below;
     one_below = row;
@@ -186,48 +214,117 @@ HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, 
   }
 }
 
-/// On the way down: substitutes, adds tensions and moments to the kick and moves.
-template <bool damped_control, typename T>
-HWY_INLINE Sums<T> go_down_stiff(const ChainPlan& plan, Vec2<T>* x, Vec2<T>* v,
-                                 const StiffSegment<T>* segments) {
-  const T zero = Constant<T>::of(0);
-  Sums<T> sums{{zero, zero}, {zero, zero}};
-  const auto move = [&](Index i, Vec2<T> velocity) NUNO_INLINE_LAMBDA {
-    v[i] = velocity;
-    x[i] = {scale_add(plan.h, velocity.x, x[i].x), scale_add(plan.h, velocity.y, x[i].y)};
-    sums.position = sums.position + x[i];
-    if constexpr (damped_control) sums.velocity = sums.velocity + velocity;
-  };
+/// Substitutes on the way down: τ, or its derivatives, of a segment and the hinge below it after
+/// another. L is made of numbers Value.
+template <typename Value, typename T>
+struct BackSubstitution {
   // τ of the hinge and segment above and of the hinge above those; the rows of L that lead there.
-  T moment_1 = zero, tension_1 = zero, moment_2 = zero;
-  MomentRow<T> moments_1{zero, zero, zero, zero, zero}, moments_2 = moments_1;
-  TensionRow<T> tensions_1{zero, zero, zero, zero};
-  Vec2<T> pulled = v[plan.particles - 1];  // by the segment above
-  for (Index i = plan.particles - 1; i-- > 0;) {
-    const StiffSegment<T>& s = segments[i];
-    const T tension =
-        neg_mul_add(moments_1.l1, moment_1,
-                    neg_mul_add(tensions_1.l2, tension_1,
-                                neg_mul_add(moments_2.l3, moment_2, s.tension.value)));
+  T moment_1, tension_1, moment_2;
+  MomentRow<Value> moments_1, moments_2;
+  TensionRow<Value> tensions_1;
+
+  struct Found {
+    T tension;
+    T moment_difference;  ///< from the hinge above
+  };
+
+  static HWY_INLINE BackSubstitution begin() {
+    const T zero(0.0);
+    const Value none(0.0);
+    const MomentRow<Value> row{none, none, none, none, none};
+    return {zero, zero, zero, row, row, {none, none, none, none}};
+  }
+
+  HWY_INLINE Found next(const MomentRow<Value>& moments, const TensionRow<Value>& tensions,
+                        T moment_value, T tension_value) {
+    const T tension = neg_mul_add(
+        moments_1.l1, moment_1,
+        neg_mul_add(tensions_1.l2, tension_1, neg_mul_add(moments_2.l3, moment_2, tension_value)));
     const T moment =
-        neg_mul_add(s.tension.l1, tension,
+        neg_mul_add(tensions.l1, tension,
                     neg_mul_add(moments_1.l2, moment_1,
                                 neg_mul_add(tensions_1.l3, tension_1,
-                                            neg_mul_add(moments_2.l4, moment_2, s.moment.value))));
-    const T shear = (moment - moment_1) * s.inverse;
-    const Vec2<T> pull{neg_mul_add(shear, s.direction.y, tension * s.direction.x),
-                       mul_add(shear, s.direction.x, tension * s.direction.y)};
-    move(i + 1, pulled - pull);
-    pulled = v[i] + pull;
+                                            neg_mul_add(moments_2.l4, moment_2, moment_value))));
+    const Found found{tension, moment - moment_1};
     moment_2 = moment_1;
     moment_1 = moment;
     tension_1 = tension;
     moments_2 = moments_1;
-    moments_1 = s.moment;
-    tensions_1 = s.tension;
+    moments_1 = moments;
+    tensions_1 = tensions;
+    return found;
   }
-  move(0, pulled);
-  return sums;
+};
+
+/// On the way down: substitutes and adds tensions and moments to the kick, through `set(i, v')`.
+/// Derivatives are those at constant τ.
+template <typename T, typename Set>
+HWY_INLINE void go_down_stiff(const ChainPlan& plan, const Vec2<T>* v,
+                              const StiffSegment<T>* segments, Set&& set) {
+  using Value = typename Constant<T>::Value;
+  auto above = BackSubstitution<Value, Value>::begin();
+  Vec2<T> pulled = v[plan.particles - 1];  // by the segment above
+  for (Index i = plan.particles - 1; i-- > 0;) {
+    const StiffSegment<T>& s = segments[i];
+    const auto found = above.next(s.moment, s.tension, s.moment.value, s.tension.value);
+    const T shear = scale(found.moment_difference, s.inverse);
+    const Vec2<T> pull{neg_mul_add(shear, s.direction.y, scale(found.tension, s.direction.x)),
+                       mul_add(shear, s.direction.x, scale(found.tension, s.direction.y))};
+    set(i + 1, pulled - pull);
+    pulled = v[i] + pull;
+  }
+  set(0, pulled);
+}
+
+/// The derivatives of τ: the system's own, differentiated, with u = v* − Σ τ·g at constant τ,
+///     A·dτ = d(g·u) + d((K/c⁺)·s + (c⁻/c⁺)·ṡ),
+/// solved with the L·D·Lᵀ of A. Up and down once more, and no factor is differentiated.
+template <typename T, typename S>
+HWY_INLINE void solve_tangents(const ChainPlan& plan, Vec2<Dual<T, S>>* v,
+                               const StiffSegment<Dual<T, S>>* segments,
+                               StiffTangent<Dual<T, S>>* tangents) {
+  using Number = Dual<T, S>;
+  const Index n = plan.particles;
+  const S zero(0.0);
+  S moment_1 = zero, moment_2 = zero, tension_1 = zero, tension_2 = zero;  // of the rows below
+  S turn_below = zero;
+  for (Index i = 0; i + 1 < n; ++i) {
+    const StiffSegment<Number>& s = segments[i];
+    StiffTangent<Number>& tangent = tangents[i];
+    const Vec2<Number> rate = v[i + 1] - v[i];
+    const S turn = (cross(s.direction, rate) * s.inverse).derivative;
+    const S moment = neg_mul_add(
+        s.moment.l1, tension_1,
+        neg_mul_add(
+            s.moment.l2, moment_1,
+            neg_mul_add(s.moment.l3, tension_2,
+                        neg_mul_add(s.moment.l4, moment_2, tangent.moment + (turn - turn_below)))));
+    const S tension =
+        neg_mul_add(s.tension.l1, moment,
+                    neg_mul_add(s.tension.l2, tension_1,
+                                neg_mul_add(s.tension.l3, moment_1,
+                                            tangent.tension + dot(s.direction, rate).derivative)));
+    tangent.moment = tangent.moment_inverse * moment;
+    tangent.tension = tangent.tension_inverse * tension;
+    turn_below = turn;
+    moment_2 = moment_1;
+    moment_1 = moment;
+    tension_2 = tension_1;
+    tension_1 = tension;
+  }
+  auto above = BackSubstitution<T, S>::begin();
+  for (Index i = n - 1; i-- > 0;) {
+    const StiffSegment<Number>& s = segments[i];
+    const auto found = above.next(s.moment, s.tension, tangents[i].moment, tangents[i].tension);
+    const S shear = s.inverse.value * found.moment_difference;
+    const Vec2<T> t = value_of(s.direction);
+    const Vec2<S> pull{neg_mul_add(t.y, shear, t.x * found.tension),
+                       mul_add(t.x, shear, t.y * found.tension)};
+    v[i + 1].x.derivative = v[i + 1].x.derivative - pull.x;
+    v[i + 1].y.derivative = v[i + 1].y.derivative - pull.y;
+    v[i].x.derivative = v[i].x.derivative + pull.x;
+    v[i].y.derivative = v[i].y.derivative + pull.y;
+  }
 }
 
 }  // namespace HWY_NAMESPACE

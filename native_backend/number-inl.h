@@ -236,6 +236,20 @@ HWY_INLINE Dual<T, S> neg_mul_add(Dual<T, S> a, Dual<T, S> b, Dual<T, S> c) {
           neg_mul_add(a.derivative, b.value, neg_mul_add(a.value, b.derivative, c.derivative))};
 }
 
+template <typename T>
+constexpr bool has_derivative = false;
+template <typename T, typename S>
+constexpr bool has_derivative<Dual<T, S>> = true;
+
+template <typename T>
+HWY_INLINE T value_of(T a) {
+  return a;
+}
+template <typename T, typename S>
+HWY_INLINE T value_of(Dual<T, S> a) {
+  return a.value;
+}
+
 /// 1/(c − a·b) with a constant c.
 template <typename T>
 HWY_INLINE T reciprocal_of_difference(T c, T a, T b) {
@@ -334,10 +348,14 @@ HWY_INLINE Dual<T, S> scale(double a, Dual<T, S> b) {
 HWY_INLINE Pack operator-(Pack a) { return hn::Neg(a.lanes); }
 HWY_INLINE Pack scale_add(Pack a, Pack b, Pack c) { return mul_add(a, b, c); }
 HWY_INLINE Pack scale(Pack a, Pack b) { return a * b; }
-HWY_INLINE Dual<Pack> scale_add(Pack a, Dual<Pack> b, Dual<Pack> c) {
+template <typename S>
+HWY_INLINE Dual<Pack, S> scale_add(Pack a, Dual<Pack, S> b, Dual<Pack, S> c) {
   return {mul_add(a, b.value, c.value), mul_add(a, b.derivative, c.derivative)};
 }
-HWY_INLINE Dual<Pack> scale(Pack a, Dual<Pack> b) { return {a * b.value, a * b.derivative}; }
+template <typename S>
+HWY_INLINE Dual<Pack, S> scale(Pack a, Dual<Pack, S> b) {
+  return {a * b.value, a * b.derivative};
+}
 /// a + b with a constant a.
 template <typename T>
 HWY_INLINE T shift(double a, T b) {

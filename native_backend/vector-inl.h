@@ -49,6 +49,11 @@ HWY_INLINE T cross(Vec2<T> a, Vec2<T> b) {
   return neg_mul_add(a.y, b.x, a.x * b.y);
 }
 
+template <typename T>
+HWY_INLINE auto value_of(Vec2<T> a) {
+  return Vec2<decltype(value_of(a.x))>{value_of(a.x), value_of(a.y)};
+}
+
 /// Sums over the particles.
 template <typename T>
 struct Sums {
