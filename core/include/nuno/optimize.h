@@ -85,7 +85,7 @@ OptimizeSummary steepest_descent(const Objective& objective,
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;  ///< of the scan, in gain scales, > 0
   double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's range
-  /// Gains of the scan, 0 among them, ≥ 4. Where control is not damped, half as many end at 100 gain
+  /// Gains of the scan, 0 among them, ≥ 4. Where control is not damped, at most 10 end at 100 gain
   /// scales and others follow, two radians of phase apart, nearer where the arrivals part. By
   /// values, thrice as many, and half a radian apart.
   Index scan = 24;
