@@ -236,7 +236,9 @@ TEST(Conditioning, SaysThatAStrainOnTheWayIsTheSteps) {
     return coarseness(flight, 0.01);
   };
   EXPECT_EQ(words(0.005, 0), "") << "too little to care";
-  EXPECT_EQ(words(0.02, 0.01), "") << "the cloth's own";
+  // Of t + 4e, with t + e beside it, 4e is the step's own.
+  EXPECT_EQ(words(0.011 + 0.010, 0.011 + 0.0025), "") << "most is the cloth's own";
+  EXPECT_NE(words(0.009 + 0.010, 0.009 + 0.0025), "") << "most is the step's";
   EXPECT_NE(words(0.021, 0.01).find("by 1 % only; a --time-step of 0.005 s"), std::string::npos);
 }
 
