@@ -31,6 +31,10 @@ Evaluation lowest_between(const Objective& objective, double from, double to) {
   return {gain, error};
 }
 
+bool calm(const Backend& backend, double gain) {
+  return sensitivity(backend, rollout(backend, gain)) <= largest_calm_sensitivity;
+}
+
 /// The oracle: 2000 gains over all that the time step resolves, evenly spaced in √α, along which E
 /// swings evenly, and Brent beside each that is lower than its neighbours. The lowest of those well
 /// below `error` [m] at which the flight is well-conditioned; none, where there is none.
@@ -49,7 +53,7 @@ std::optional<Evaluation> lower_minimum(const Backend& backend, const Objective&
     if (errors[i] > errors[i - 1] || errors[i] > errors[i + 1] || errors[i] > 1.2 * error) continue;
     const Evaluation at = lowest_between(objective, gains[i - 1], gains[i + 1]);
     if (!(at.error < (lowest ? lowest->error : error))) continue;
-    if (sensitivity(backend, rollout(backend, at.gain)) <= largest_calm_sensitivity) lowest = at;
+    if (calm(backend, at.gain)) lowest = at;
   }
   return lowest;
 }
@@ -90,12 +94,15 @@ void minima(Report& report, const Options& options) {
     const double length = problem.cloth().size;
     const std::optional<Evaluation> scan = lower_minimum(*native, ours, found.error);
     const double over_scan = scan ? (found.error - scan->error) / length : 0;
-    const double over_descent = (found.error - steepest_descent(ours).error) / length;
+    const OptimizeSummary descent = steepest_descent(ours);
+    const double over_descent = (found.error - descent.error) / length;
     below_descent += over_descent < -1e-4;
-    fragile += sensitivity(*native, rollout(*native, found.gain)) > largest_calm_sensitivity;
+    fragile += !calm(*native, found.gain);
     evaluations += static_cast<double>(found.evaluations) / static_cast<double>(all.size());
     above_scan += over_scan > tolerance;
-    worst_over_descent = std::max(worst_over_descent, over_descent);
+    if (calm(*native, descent.gain)) {
+      worst_over_descent = std::max(worst_over_descent, over_descent);
+    }
     worst_over_scan = std::max(worst_over_scan, over_scan);
     if (over_scan > tolerance || over_descent > tolerance) {
       fmt::print(
@@ -110,12 +117,11 @@ void minima(Report& report, const Options& options) {
   report.add("global search", "far below the descent", "", exactly(below_descent));
   report.end();
   report.check(worst_over_descent <= tolerance,
-               fmt::format("never a worse minimum than the descent, in {} scenes (the closest: "
-                           "{:+.0e} of the length)",
+               fmt::format("never a worse minimum than a well-conditioned one of the descent, "
+                           "in {} scenes (the closest: {:+.0e} of the length)",
                            all.size(), worst_over_descent));
   report.check(worst_over_scan <= tolerance_beside_noise,
-               fmt::format("nor than any well-conditioned one of the scan (the worst: {:+.0e})",
-                           worst_over_scan));
+               fmt::format("nor than one of the scan (the worst: {:+.0e})", worst_over_scan));
 }
 
 }  // namespace nuno::bench

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace nuno {
@@ -14,6 +15,22 @@ ParetoPoint point_at(const Backend& backend, double gain,
   if (before_rollout) before_rollout();
   const Rollout flight = rollout(backend, gain);
   return {gain, flight.error.mean, flight.control_effort};
+}
+
+/// Adds the best of a search, and those of it that no smaller gain beats. It tries the bottom of a
+/// valley many times: of gains that are all but as good, the smallest.
+void add_unbeaten_gains(std::span<const Evaluation> tried, std::vector<double>& gains) {
+  if (tried.empty()) return;
+  constexpr double worth = 0.01;  // of the error
+  std::vector<Evaluation> ascending(tried.begin(), tried.end());
+  std::ranges::sort(ascending, {}, &Evaluation::gain);
+  double least = std::numeric_limits<double>::infinity();
+  for (const Evaluation& at : ascending) {
+    if (!(at.error < (1 - worth) * least)) continue;
+    least = at.error;
+    gains.push_back(at.gain);
+  }
+  gains.push_back(std::ranges::min_element(ascending, {}, &Evaluation::error)->gain);
 }
 
 /// Halves the gains between two points, one on either side of a limit, until they meet; gives the
@@ -46,15 +63,21 @@ std::vector<ParetoPoint> pareto_optimal(std::vector<ParetoPoint> points) {
 }
 
 std::vector<ParetoPoint> pareto_front(const Backend& backend, Index count,
+                                      std::span<const Evaluation> tried,
                                       const std::function<void()>& before_rollout) {
   const Objective range = objective(backend);
   const double first = 1e-2 * range.gain_scale;
   const double last = std::max(2 * first, gain_range(range).calm);
-  std::vector<ParetoPoint> all(static_cast<std::size_t>(count) + 1);
-  parallel_for(count + 1, [&](Index i) {
-    const double along = static_cast<double>(i - 1) / static_cast<double>(count - 1);
-    const double gain = i == 0 ? 0 : first * std::pow(last / first, along);
-    all[static_cast<std::size_t>(i)] = point_at(backend, gain, before_rollout);
+  std::vector<double> gains = {0};
+  for (Index i = 0; i < count; ++i) {
+    const double along = static_cast<double>(i) / static_cast<double>(count - 1);
+    gains.push_back(first * std::pow(last / first, along));
+  }
+  add_unbeaten_gains(tried, gains);
+  std::vector<ParetoPoint> all(gains.size());
+  parallel_for(static_cast<Index>(gains.size()), [&](Index i) {
+    const auto at = static_cast<std::size_t>(i);
+    all[at] = point_at(backend, gains[at], before_rollout);
   });
   return pareto_optimal(std::move(all));
 }

@@ -34,7 +34,9 @@ Optimization search_front(const SearchOptions& options, const Backend& backend) 
   OptimizeSummary& summary = found.summary;
   std::atomic<Index> rollouts = 0;
   const auto count = [&] { ++rollouts; };
-  found.pareto_front = pareto_front(backend, 64, count);
+  const OptimizeSummary least = global_search(objective(backend));
+  rollouts += least.evaluations;
+  found.pareto_front = pareto_front(backend, 64, least.history, count);
   summary.evaluations = rollouts;
   if (found.pareto_front.empty()) return found;  // every rollout diverged
   ParetoPoint point;

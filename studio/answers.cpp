@@ -202,7 +202,10 @@ Answer pareto_front_answer(const Request& request) {
   const auto backend = make_backend(request.options.backend, file);
   require_quick(file, *backend, request.options);
   Json points = Json::array();
-  for (const ParetoPoint& point : pareto_front(*backend, gains_of_pareto_front(*backend))) {
+  const Index count = gains_of_pareto_front(*backend);
+  std::vector<Evaluation> tried;
+  if (backend->has_derivatives()) tried = global_search(objective(*backend)).history;
+  for (const ParetoPoint& point : pareto_front(*backend, count, tried)) {
     points.push_back(
         {{"alpha", point.gain}, {"error", point.error}, {"control_effort", point.effort}});
   }

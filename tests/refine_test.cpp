@@ -271,7 +271,7 @@ TEST(ParetoFront, EndsWithWhatItsCallerThrows) {
   struct Enough {};
   const auto backend = native::make_backend(morph_problem(0));
   std::atomic<int> asked = 0;
-  EXPECT_THROW(pareto_front(*backend, 24,
+  EXPECT_THROW(pareto_front(*backend, 24, {},
                             [&] {
                               if (++asked > 3) throw Enough();
                             }),

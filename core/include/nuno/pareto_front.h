@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <optional>
+#include <span>
+#include <vector>
 
 namespace nuno {
 
@@ -19,10 +21,12 @@ struct ParetoPoint {
 /// descending in error. Points without a finite error (rollouts that diverged) are left out.
 std::vector<ParetoPoint> pareto_optimal(std::vector<ParetoPoint> points);
 
-/// The best pareto of a backend's problem: among launch only and the gains (log-spaced over the
-/// objective's range, `count` of them). `before_rollout` is called before every rollout, by several
+/// The Pareto front of a backend's problem: among launch only, gains that are log-spaced over the
+/// objective's range, `count` of them, and those of a search, `tried`, that no smaller one of it
+/// beats: its valleys may lie between. `before_rollout` is called before every rollout, by several
 /// threads at once; what it throws ends the work and comes out of here.
 std::vector<ParetoPoint> pareto_front(const Backend& backend, Index count = 64,
+                                      std::span<const Evaluation> tried = {},
                                       const std::function<void()>& before_rollout = {});
 
 /// The point of least effort whose error is at most `error_limit` [m], between the points of
