@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <string>
 
 #include "sheets.h"
 
@@ -98,6 +99,20 @@ TEST_P(DefaultStep, TakesAFlightFarFromTheOriginForTheSameFlight) {
       EXPECT_NEAR(bounded_sensitivity(*there, far), growth, 0.1 * std::max(1.0, growth)) << place;
     }
   }
+}
+
+TEST(Box2dSteps, TooManyForItsDashpotsAreRefusedWithTheirValue) {
+  ChainScene scene = scene_of({.length = 1, .arrival_time = 1, .hinge_damping = 1234}, 32);
+  const SceneFile file = make_scene_file("ribbon", scene);
+  try {
+    make_backend("box2d", file);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("ribbon: /cloth/hinge_damping: 1234 takes "))
+        << error.what();
+  }
+  // On native they are implicit, and no reason for shorter steps.
+  EXPECT_LE(make_backend("native", file)->steps(), 20'000);
 }
 
 INSTANTIATE_TEST_SUITE_P(EachOf, DefaultStep, testing::ValuesIn(chain_engines),
