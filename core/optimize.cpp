@@ -213,14 +213,16 @@ void search_by_values(const Objective& objective, std::span<const double> gains,
   const int bits = static_cast<int>(std::ceil(-std::log2(options.gain_tolerance)));
   for (const std::size_t valley : valleys) {
     auto iterations = static_cast<std::uintmax_t>(options.rounds);
+    // In gain scales: Brent's tolerance has a part that is absolute.
     boost::math::tools::brent_find_minima(
-        [&](double gain) {
+        [&](double scales) {
+          const double gain = scales * objective.gain_scale;
           const double error = counter.error(gain);
           summary.history.push_back({gain, error});
           return error;
         },
-        gains[valley == 0 ? 0 : valley - 1], gains[std::min(valley + 1, gains.size() - 1)], bits,
-        iterations);
+        gains[valley == 0 ? 0 : valley - 1] / objective.gain_scale,
+        gains[std::min(valley + 1, gains.size() - 1)] / objective.gain_scale, bits, iterations);
   }
   summary.evaluations += counter.count();
 }

@@ -261,8 +261,23 @@ Points perturbed(const Problem& problem, double size, unsigned seed) {
   return moved(1e-3 * size / probe);
 }
 
+namespace {
+
+/// The smallest perturbation, over L, that coordinates so far from the origin tell apart: a
+/// thousand times their last digit.
+double told_apart(const Problem& problem) {
+  const Cloth& cloth = problem.cloth();
+  const double farthest =
+      std::max(cloth.initial.cwiseAbs().maxCoeff(), problem.target.cwiseAbs().maxCoeff());
+  return 1e3 * std::numeric_limits<double>::epsilon() * farthest / cloth.size;
+}
+
+}  // namespace
+
 double sensitivity(const Backend& backend, const Rollout& flight) {
-  const Points initial = perturbed(backend.problem(), backend.smallest_perturbation());
+  const Problem& problem = backend.problem();
+  const Points initial =
+      perturbed(problem, std::max(backend.smallest_perturbation(), told_apart(problem)));
   const Rollout twin = rollout(backend, flight.gains, {}, initial);
   if (flight.status == RolloutStatus::diverged || twin.status == RolloutStatus::diverged) {
     return std::numeric_limits<double>::infinity();

@@ -17,6 +17,7 @@
 #include "own_engine.h"
 #include "scene_library.h"
 #include "sheets.h"
+#include "units.h"
 
 namespace nuno {
 namespace {
@@ -365,38 +366,13 @@ TEST_P(EveryEngine, ReversesItsAnswerWithTheOrderOfParticles) {
   }
 }
 
-// By powers of two, so that a double rounds alike.
-constexpr double scaled_length = 4, scaled_time = 0.5, scaled_mass = 8;
-constexpr double scaled_force = scaled_mass * scaled_length / (scaled_time * scaled_time);
-
-void scale_material(ChainScene& scene) {
-  scene.cloth.mass *= scaled_mass;
-  scene.cloth.air_drag *= scaled_mass / scaled_time;
-  scene.cloth.stretch_stiffness *= scaled_force;
-  scene.cloth.stretch_damping *= scaled_force * scaled_time;
-  scene.cloth.hinge_stiffness *= scaled_force * scaled_length * scaled_length;
-}
-
-void scale_material(SheetScene& scene) {
-  constexpr double area = scaled_length * scaled_length;
-  scene.cloth.areal_density *= scaled_mass / area;
-  scene.cloth.air_drag *= scaled_mass / scaled_time / area;
-  scene.cloth.stretch_stiffness *= scaled_force / scaled_length;
-  scene.cloth.stretch_damping *= scaled_force / scaled_length * scaled_time;
-  scene.cloth.shear_stiffness *= scaled_force / scaled_length;
-  scene.cloth.shear_damping *= scaled_force / scaled_length * scaled_time;
-  scene.cloth.bending_stiffness *= scaled_force * scaled_length;
-}
-
-TEST_P(EveryEngine, ScalesItsAnswerWithLengthTimeAndMass) {
+TEST_P(EveryEngine, ScalesItsAnswerWithLengthTimeAndForce) {
+  constexpr Units units = {.length = 4, .time = 0.5, .force = 128};  // doubles round alike
   for (ClothScene& scene : calm_scenes(GetParam())) {
     const double gain = calm_gain(problem_of(scene));
-    ClothScene scaled =
-        with_shapes(scene, [](const Points& x) -> Points { return scaled_length * x; });
-    common(scaled).arrival_time *= scaled_time;
-    common(scaled).gravity *= scaled_length / (scaled_time * scaled_time);
-    std::visit([](auto& any) { scale_material(any); }, scaled);
-    const Points answer = final_shape(scaled, gain * scaled_force / scaled_length) / scaled_length;
+    const ClothScene scaled =
+        std::visit([&](const auto& any) -> ClothScene { return in_units(any, units); }, scene);
+    const Points answer = final_shape(scaled, gain * units.gain()) / units.length;
     EXPECT_LT(farthest(answer, final_shape(scene, gain)), calm_growth * rounding())
         << common(scene).name;
   }

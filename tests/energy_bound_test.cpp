@@ -5,6 +5,7 @@
 #include <nuno/launch.h>
 #include <nuno/reference_motion.h>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,6 +13,8 @@
 #include <cstdlib>
 #include <numbers>
 #include <random>
+#include <string>
+#include <vector>
 
 namespace nuno {
 namespace {
@@ -152,6 +155,42 @@ TEST_P(EnergyBound, NoSegmentHoldsMoreThanTheWholeFlightOrAWordSaysSo) {
   RecordProperty("told", counts.told);
   RecordProperty("diverged", counts.diverged);
   EXPECT_LT(2 * (counts.told + counts.diverged), counts.flights);  // or the bound judges little
+}
+
+/// A metre of stiff thread that nothing brakes, pulled together by its control alone.
+struct Fold {
+  Points target;
+  Index particles;
+  double stretch_stiffness;  // [N]
+  double gain;               // [N/m]
+};
+
+/// A quarter folded back, and nearly all of a circle: 4.6 rad.
+std::vector<Fold> folds() {
+  const Points vee{{0, 0.5, 0}, {0, 0.1, 0.2}};
+  Points curl(2, 33);
+  for (Index i = 0; i < curl.cols(); ++i) {
+    const double turn = 4.6 * static_cast<double>(i) / 32;
+    curl.col(i) << std::sin(turn) / 4.6, (1 - std::cos(turn)) / 4.6;
+  }
+  return {{vee, 16, 2e4, 5}, {vee, 32, 2e4, 0.5}, {curl, 32, 200, 5}, {curl, 32, 2e4, 5}};
+}
+
+TEST_P(EnergyBound, HoldsWhereControlFoldsAStiffThread) {
+  for (const Fold& fold : folds()) {
+    ChainScene scene;
+    scene.name = fmt::format("{} particles, EA {}", fold.particles, fold.stretch_stiffness);
+    scene.particles = fold.particles;
+    scene.arrival_time = 1;
+    scene.gravity = scene.cloth.air_drag = 0;
+    scene.initial = Points{{0, 1}, {1, 1}};
+    scene.target = fold.target;
+    scene.cloth.stretch_stiffness = fold.stretch_stiffness;
+    const SceneFile file = make_scene_file(scene.name, scene);
+    Counts counts;
+    judge(file, *make_backend_for_gain(GetParam(), file, fold.gain), fold.gain, counts);
+    EXPECT_EQ(counts.diverged, 0) << scene.name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(EachOf, EnergyBound, testing::ValuesIn(chain_engines),

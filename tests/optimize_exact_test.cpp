@@ -116,6 +116,20 @@ TEST(GlobalSearch, FindsAValleyAtEitherEndOfItsScanByValues) {
   EXPECT_NEAR(global_search(objective, {.rounds = 60}).gain, 6.99, 1e-4);
 }
 
+TEST(GlobalSearch, ByValuesTriesTheSameGainsWhateverTheirUnit) {
+  const auto tried_in = [](double unit) {
+    Objective objective =
+        objective_of([=](double gain) { return 1 + std::abs(std::log((gain / unit + 0.3) / 3)); });
+    objective.gain_scale = unit;
+    std::vector<double> gains;
+    for (const Evaluation& at : global_search(objective, {.rounds = 60}).history) {
+      gains.push_back(at.gain / unit);
+    }
+    return gains;
+  };
+  for (const double unit : {0x1p-30, 0x1p30}) EXPECT_EQ(tried_in(unit), tried_in(1)) << unit;
+}
+
 /// One particle that arrives r(u) > 0 beside its target, u = √α, and tells `slope`(u) for dr/du.
 Objective beside_the_target(const std::function<double(double u)>& residual,
                             const std::function<double(double u)>& slope) {

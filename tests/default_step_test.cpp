@@ -1,0 +1,122 @@
+// What the steps that an engine chooses by itself hold, whatever the cloth's size, its flight and
+// its place.
+
+#include <nuno/conditioning.h>
+#include <nuno/engines.h>
+#include <nuno/rollout.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+
+#include "sheets.h"
+
+namespace nuno {
+namespace {
+
+/// A ribbon of the default cloth, thrown from a line three lengths far into an arch.
+struct Throw {
+  double length;         // [m]
+  double arrival_time;   // [s]
+  double hinge_damping;  // [N·m²·s]
+};
+
+ChainScene scene_of(const Throw& thrown, Index particles) {
+  ChainScene scene;
+  scene.particles = particles;
+  scene.arrival_time = thrown.arrival_time;
+  scene.initial = thrown.length * Points{{0, 1}, {1, 1}};
+  scene.target = thrown.length * Points{{3.0, 3.2, 3.5, 3.8, 4.0}, {1.0, 1.3, 1.4, 1.3, 1.0}};
+  scene.cloth.hinge_damping = thrown.hinge_damping;
+  return scene;
+}
+
+/// Lengths, times and dampings to the ends of what cloth is; of a flight that takes too long on an
+/// engine only where NUNO_LONG_FLIGHTS says how many particle-steps may be taken.
+double most_work() {
+  const char* const wished = std::getenv("NUNO_LONG_FLIGHTS");
+  return wished ? std::atof(wished) : 2e4;
+}
+
+/// How far the centroid may be off [m]. The bars of L; and native adds up its places, of which
+/// there are 4 km from the ground to the top of a flight of a minute, in double precision.
+double tolerance(std::string_view engine, const Throw& thrown, double gravity) {
+  if (engine != "native") return 1e-4 * thrown.length;
+  const double height = gravity * thrown.arrival_time * thrown.arrival_time / 8;
+  return 1e-9 * thrown.length + 1e-14 * height;
+}
+
+class DefaultStep : public testing::TestWithParam<std::string_view> {};
+
+TEST_P(DefaultStep, BringsTheCentroidHomeWhateverTheSizeTheTimeAndTheDamping) {
+  int flown = 0;
+  for (const double length : {0.01, 0.1, 1.0, 1e3}) {
+    for (const double time : {0.05, 1.0, 10.0, 60.0}) {
+      for (const double damping : {0.0, 1e-3, 1e-2}) {
+        const Throw thrown{length, time, damping};
+        const SceneFile file = make_scene_file("ribbon", scene_of(thrown, 8));
+        std::unique_ptr<Backend> backend;
+        try {
+          backend = make_backend(GetParam(), file);
+        } catch (const InputError&) {  // it says that such a flight would take hours
+          continue;
+        }
+        const double work =
+            static_cast<double>(backend->steps() * file.problem.chain().particles());
+        if (work > most_work() * (GetParam() == "native" ? 100 : 1)) continue;
+        for (const double scales : {0.0, 1.0, 100.0}) {
+          const Rollout flight = rollout(*backend, scales * gain_scale(file.problem));
+          EXPECT_LE(flight.error.centroid, tolerance(GetParam(), thrown, file.scene.gravity))
+              << length << " m, " << time << " s, " << damping << " N·m²·s, gain × " << scales;
+          ++flown;
+        }
+      }
+    }
+  }
+  EXPECT_GE(flown, GetParam() == "native" ? 3 * 48 : 3 * 30);
+}
+
+TEST_P(DefaultStep, TakesAFlightFarFromTheOriginForTheSameFlight) {
+  const auto at = [](double place) {
+    ChainScene scene = scene_of({.length = 1, .arrival_time = 1, .hinge_damping = 0}, 16);
+    scene.initial.row(0).array() += place;
+    scene.target.row(0).array() += place;
+    return make_scene_file("ribbon", scene);
+  };
+  const auto here = make_backend(GetParam(), at(0));
+  for (const double place : {1e6, 1e8}) {
+    const auto there = make_backend(GetParam(), at(place));
+    const double digit = 2e-16 * place;  // what a coordinate there can tell apart
+    for (const double scales : {0.0, 1.0}) {
+      const double gain = scales * gain_scale(here->problem());
+      const Rollout near = rollout(*here, gain), far = rollout(*there, gain);
+      EXPECT_LE(far.error.centroid, 1e-9 + 10 * digit) << place;
+      EXPECT_LE(shape_difference(here->cloth(), near.final, far.final).max, 1e-6 + 100 * digit)
+          << place;
+      const double growth = bounded_sensitivity(*here, near);
+      EXPECT_NEAR(bounded_sensitivity(*there, far), growth, 0.1 * std::max(1.0, growth)) << place;
+    }
+  }
+}
+
+TEST(Box2dSteps, TooManyForItsDashpotsAreRefusedWithTheirValue) {
+  ChainScene scene = scene_of({.length = 1, .arrival_time = 1, .hinge_damping = 1234}, 32);
+  const SceneFile file = make_scene_file("ribbon", scene);
+  try {
+    make_backend("box2d", file);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_TRUE(std::string(error.what()).starts_with("ribbon: /cloth/hinge_damping: 1234 takes "))
+        << error.what();
+  }
+  // On native they are implicit, and no reason for shorter steps.
+  EXPECT_LE(make_backend("native", file)->steps(), 20'000);
+}
+
+INSTANTIATE_TEST_SUITE_P(EachOf, DefaultStep, testing::ValuesIn(chain_engines),
+                         [](const auto& engine) { return std::string(engine.param); });
+
+}  // namespace
+}  // namespace nuno
