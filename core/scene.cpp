@@ -65,9 +65,9 @@ void refuse_fault(const std::string& source, std::string_view field,
     case MeshFault::At::mesh:
       refuse(source, field, fault->what);
     case MeshFault::At::face:
-      refuse(source, fmt::format("/faces/{}", fault->number), fault->what);
+      refuse(source, fmt::format("{}/faces/{}", field, fault->number), fault->what);
     case MeshFault::At::vertex:
-      refuse(source, fmt::format("{}/{}", field, fault->number), fault->what);
+      refuse(source, fmt::format("{}/vertices/{}", field, fault->number), fault->what);
   }
 }
 

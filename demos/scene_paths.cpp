@@ -24,8 +24,8 @@ std::vector<std::string> scene_paths(const std::vector<std::string>& paths) {
          entry.increment(error)) {
       if (entry->path().extension() == ".json") inside.push_back(entry->path().string());
     }
-    if (error) throw InputError(fmt::format("{}: /: {}", path, error.message()));
-    if (inside.empty()) throw InputError(fmt::format("{}: /: is a folder without a *.json", path));
+    if (error) throw InputError(fmt::format("{}: {}", path, error.message()));
+    if (inside.empty()) throw InputError(fmt::format("{}: is a folder without a *.json", path));
     std::ranges::sort(inside);
     result.insert(result.end(), inside.begin(), inside.end());
   }

@@ -15,6 +15,8 @@
 #include <stop_token>
 #include <system_error>
 
+#include "long_work.h"
+
 namespace nuno {
 
 namespace {
@@ -45,22 +47,27 @@ double seconds_of_flight(const Backend& backend) {
 
 void tell(std::stop_token stop, const std::string& announcement, const std::string& label,
           double expected) {
-  using std::chrono::seconds;
-  constexpr auto settled = seconds(2), pause = seconds(30);  // what diverges, mostly does at once
-  const auto start = Clock::now();
   std::mutex mutex;
   std::condition_variable_any ended;
   std::unique_lock lock(mutex);
-  const auto goes_on_for = [&](seconds time) {
+  const auto goes_on_for = [&](std::chrono::seconds time) {
     return !ended.wait_for(lock, stop, time, [&] { return stop.stop_requested(); });
   };
-  if (goes_on_for(settled)) note(announcement);
-  while (!stop.stop_requested() && goes_on_for(pause)) {
-    note(fmt::format("{}: {:.0f} s of about {:.0f}", label, seconds_since(start), expected));
-  }
+  tell_of_long_work(announcement, label, expected, goes_on_for, note);
 }
 
 }  // namespace
+
+void tell_of_long_work(const std::string& announcement, const std::string& label, double expected,
+                       const std::function<bool(std::chrono::seconds)>& goes_on_for,
+                       const std::function<void(const std::string&)>& say) {
+  constexpr std::chrono::seconds settled(2), pause(30);  // what diverges, mostly does at once
+  if (!goes_on_for(settled)) return;
+  say(announcement);
+  for (auto taken = settled + pause; goes_on_for(pause); taken += pause) {
+    say(fmt::format("{}: {} s of about {:.0f}", label, taken.count(), expected));
+  }
+}
 
 LongWork::LongWork(const Backend& backend, const std::string& label, double flights) {
   constexpr double patience = 10;  // seconds in which nobody asks

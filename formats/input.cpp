@@ -50,7 +50,7 @@ std::string read_file(const std::string& path, const std::string& at, const char
 }
 
 std::string read_input(const std::string& path) {
-  return read_file(path, name_of_input(path) + ": /", "a file of JSON");
+  return read_file(path, name_of_input(path), "a file of JSON");
 }
 
 }  // namespace nuno

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -18,6 +17,7 @@
 #include <unistd.h>
 
 #include "encoding.h"
+#include "progress_pace.h"
 
 namespace nuno {
 namespace {
@@ -108,10 +108,7 @@ void require_permission(const std::string& path) {
 
 constexpr const char* progress_start = "\r\x1b[K";  // of an emptied line
 
-// When progress is told off a terminal again; all threads work at the same for a person.
-using Clock = std::chrono::steady_clock;
-constexpr Clock::time_point no_work{};
-std::atomic<Clock::time_point> next_line = no_work;
+ProgressPace pace;
 
 bool at_terminal() { return isatty(fileno(stderr)) != 0; }
 
@@ -249,18 +246,13 @@ void show_progress(const std::string& text) {
     std::fputs((progress_start + printable(text)).c_str(), stderr);
     return;
   }
-  constexpr auto patience = std::chrono::seconds(10), pause = std::chrono::seconds(30);
-  const auto now = Clock::now();
-  Clock::time_point due = next_line;
-  if (due == no_work) {
-    next_line = now + patience;
-  } else if (now >= due && next_line.compare_exchange_strong(due, now + pause)) {
+  if (pace.is_due(std::chrono::steady_clock::now())) {
     std::fputs((printable(text) + '\n').c_str(), stderr);
   }
 }
 
 void clear_progress() {
-  next_line = no_work;
+  pace.end();
   if (at_terminal()) std::fputs(progress_start, stderr);
 }
 

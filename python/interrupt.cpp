@@ -7,11 +7,14 @@
 #include <exception>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace nuno::python {
 namespace {
 
 namespace py = pybind11;
+
+thread_local std::stop_token obeyed;
 
 bool in_main_thread() {
   const py::module_ threading = py::module_::import("threading");
@@ -55,9 +58,12 @@ class Work {
 
 }  // namespace
 
+void obey(std::stop_token stop) { obeyed = std::move(stop); }
+
 void without_lock(const std::function<void()>& work, const std::stop_source& stop) {
   if (!in_main_thread()) {
     const py::gil_scoped_release unlocked;
+    const std::stop_callback passed_on(obeyed, [&stop] { stop.request_stop(); });
     work();
     return;
   }

@@ -5,9 +5,13 @@
 
 namespace nuno::python {
 
+/// From now on this thread's work ends at its next step once `stop` is requested.
+void obey(std::stop_token stop);
+
 /// Does work while other threads of Python run. Where it is called by Python's main thread, the one
 /// that a signal reaches, an exception of the signal's handler (Ctrl-C: KeyboardInterrupt) requests
-/// `stop`, which ends the work at its next step, and is thrown here.
+/// `stop`, which ends the work at its next step, and is thrown here. In other threads, what they
+/// obey requests it.
 void without_lock(const std::function<void()>& work, const std::stop_source& stop);
 
 }  // namespace nuno::python

@@ -91,6 +91,11 @@ struct HeldCore {
   std::optional<OnOneCore> alone;
 };
 
+/// What ends the work of every thread that is within its `with` of Python's.
+struct SharedStop {
+  std::stop_source source;
+};
+
 /// compare.json of one scene, as text.
 std::string compare_json(const ScenePointer& scene) {
   const std::stop_source stop;
@@ -134,6 +139,12 @@ void add_searches(py::module_& module) {
       .def(py::init<>())
       .def("__enter__", [](HeldCore& self) { self.alone.emplace(); })
       .def("__exit__", [](HeldCore& self, const py::args&) { self.alone.reset(); });
+  py::class_<SharedStop>(module, "Stop",
+                         "In a `with`: this thread's work ends at its next step after `request`.")
+      .def(py::init<>())
+      .def("request", [](const SharedStop& self) { self.source.request_stop(); })
+      .def("__enter__", [](const SharedStop& self) { obey(self.source.get_token()); })
+      .def("__exit__", [](const SharedStop&, const py::args&) { obey({}); });
 }
 
 }  // namespace nuno::python

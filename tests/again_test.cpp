@@ -212,7 +212,7 @@ TEST_F(Again, RefusesASheetThatIsNotWhole) {
   expect("/initial/faces", 1, "/initial/faces", "1", "is not a list of faces");
   expect("/initial/faces/3", {0, 1, 1e6}, "/initial/faces/3", "1000000",
          "is not a whole number within 0 …");
-  expect("/initial/faces/3", {0, 1}, "/faces/3", "2 corners", "are not 3 or 4");
+  expect("/initial/faces/3", {0, 1}, "/initial/faces/3", "2 corners", "are not 3 or 4");
   expect("/initial/vertices", {{0, 0}, {1, 1}}, "/initial/vertices/0", "2 numbers", "are not 3");
   expect("/target/vertices", {{0, 0, 1}, {1, 1, 1}}, "/target", "2 vertices", "of /initial");
   expect("/initial/file_vertices", {-1}, "/initial/file_vertices", "-1", "is not a whole number");

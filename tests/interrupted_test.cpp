@@ -25,7 +25,7 @@ constexpr int few_moments = 4;  // at which each command is killed; NUNO_MOMENTS
 
 struct Command {
   const char* name;
-  std::vector<std::string> arguments;  ///< SCENE, RESULT and OUT stand for paths
+  std::vector<std::string> arguments;  ///< words in capitals stand for paths
   const char* needs = "";              ///< a program that it runs
 };
 
@@ -35,8 +35,14 @@ const std::vector<Command> commands = {
     {"Refine", {"optimize", "SCENE", "--refine", "--out", "OUT/flight.usda"}},
     {"Throw", {"throw", "DRAWING", "--time", "0.5", "--out", "OUT/frame.####.obj"}},
     {"ThrowOfASheet", {"throw", "MESH", "MESH", "--time", "0.5", "--out", "OUT/cloth.pc2"}},
+    {"SimulateASheet", {"simulate", "SHEET", "--out", "OUT/cloth.mdd"}},
+    {"OptimizeASheet", {"optimize", "SHEET", "--out", "OUT/result.json"}},
+    {"RefineASheet", {"optimize", "SHEET", "--refine", "--out", "OUT/cloth.glb"}},
     {"Compare", {"compare", "SCENE", "--out", "OUT"}},
+    {"CompareASheet", {"compare", "SHEET", "--out", "OUT"}},
+    {"Batch", {"batch", "SHOTS", "--out", "OUT"}},
     {"RenderSvg", {"render", "RESULT", "--out", "OUT/flight.svg"}},
+    {"RenderASheet", {"render", "SHEET", "--out", "OUT/cloth.svg"}},
     {"RenderPng", {"render", "RESULT", "--out", "OUT/flight.png"}, "rsvg-convert"},
     {"RenderFilm", {"render", "RESULT", "--out", "OUT/flight.mp4"}, "ffmpeg"},
     {"Figures", {"figures", "--out", "OUT"}, "rsvg-convert"},
@@ -81,12 +87,23 @@ class Interrupted : public Program, public testing::WithParamInterface<Command> 
     scene["frames_per_second"] = 2000;  // the file takes its time
     write_text(in_folder("scene.json"), scene.dump());
     write_text(in_folder("mesh.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 1\nv 1 0 1\nf 1 3 2\nf 2 3 4\n");
+    write_text(in_folder("sheet.json"),
+               R"({"nuno_scene": 1, "arrival_time": 0.3, "initial": )"
+               R"("mesh.obj", "target": "bent.obj", "reference": "morph"})");
+    write_text(in_folder("bent.obj"),
+               "v 1 0 0\nv 2 0 0\nv 1 0.2 0.9\nv 2 0.3 0.9\nf 1 3 2\nf 2 3 4\n");
+    fs::create_directory(in_folder("shots"));
+    for (const char* name : {"a", "b", "c"}) {
+      write_text(in_folder("shots") / (std::string(name) + ".json"), scene.dump());
+    }
     write_text(in_folder("drawing.svg"),
                R"(<svg xmlns="http://www.w3.org/2000/svg"><path id="initial" d="M0 0H90"/>)"
                R"(<path id="target" d="M200 0q40 -30 80 0"/></svg>)");
     std::vector<std::string> words = GetParam().arguments;
     for (std::string& word : words) {
       if (word == "SCENE") word = in_folder("scene.json");
+      if (word == "SHEET") word = in_folder("sheet.json");
+      if (word == "SHOTS") word = in_folder("shots");
       if (word == "MESH") word = in_folder("mesh.obj");
       if (word == "DRAWING") word = in_folder("drawing.svg");
       if (word == "RESULT") word = in_folder("result.json");

@@ -48,38 +48,42 @@ INSTANTIATE_TEST_SUITE_P(
     Meshes, MalformedSheet,
     testing::Values(
         BadMesh{[](SheetScene& s) { s.faces.clear(); }, "/initial: 0 faces are not at least one"},
-        BadMesh{[](SheetScene& s) { s.faces[1].resize(2); }, "/faces/1: 2 corners are not 3 or 4"},
+        BadMesh{[](SheetScene& s) { s.faces[1].resize(2); },
+                "/initial/faces/1: 2 corners are not 3 or 4"},
         BadMesh{[](SheetScene& s) {
                   s.faces[1] = {0, 1, 2, 5, 4};
                 },
-                "/faces/1: 5 corners are not 3 or 4"},
-        BadMesh{[](SheetScene& s) { s.faces[2][3] = 9; }, "/faces/2: vertex 9 is not within 0 … 8"},
+                "/initial/faces/1: 5 corners are not 3 or 4"},
+        BadMesh{[](SheetScene& s) { s.faces[2][3] = 9; },
+                "/initial/faces/2: vertex 9 is not within 0 … 8"},
         BadMesh{[](SheetScene& s) { s.faces[2][3] = -1; },
-                "/faces/2: vertex -1 is not within 0 … 8"},
+                "/initial/faces/2: vertex -1 is not within 0 … 8"},
         BadMesh{[](SheetScene& s) { s.faces[0][3] = 3; },
-                "/faces/0: vertex 3 stands twice in the face"},
+                "/initial/faces/0: vertex 3 stands twice in the face"},
         BadMesh{[](SheetScene& s) { s.initial.col(4) = s.initial.col(1); },
-                "/faces/0: the edge from vertex 4 to 1 has no length"},
-        BadMesh{[](SheetScene& s) {
-                  s.faces.push_back({0, 1, 2});
-                },
-                "/faces/4: has no area at vertex 0, which lies on a line with its neighbours"},
+                "/initial/faces/0: the edge from vertex 4 to 1 has no length"},
+        BadMesh{
+            [](SheetScene& s) {
+              s.faces.push_back({0, 1, 2});
+            },
+            "/initial/faces/4: has no area at vertex 0, which lies on a line with its neighbours"},
         BadMesh{
             [](SheetScene& s) { s.initial.col(4) = 0.5 * (s.initial.col(1) + s.initial.col(3)); },
-            "/faces/0: has no area at vertex 4, which lies on a line with its neighbours"},
+            "/initial/faces/0: has no area at vertex 4, which lies on a line with its neighbours"},
         BadMesh{[](SheetScene& s) {
                   s.initial.col(4) =
                       0.3 * (s.initial.col(1) + s.initial.col(3)) + 0.4 * s.initial.col(0);
                 },
-                "/faces/0: is a quad that is not convex at vertex 4: two triangles can be"},
+                "/initial/faces/0: is a quad that is not convex at vertex 4: two triangles can be"},
         BadMesh{[](SheetScene& s) { std::swap(s.faces[0][0], s.faces[0][1]); },
-                "/faces/0: is a quad that is not convex at vertex 3: two triangles can be"},
-        BadMesh{
-            [](SheetScene& s) {
-              s.faces.push_back({1, 4, 6});
-            },
-            "/faces/4: is the third face at the edge from vertex 1 to 4; an edge has one or two"},
-        BadMesh{[](SheetScene& s) { s.faces.pop_back(); }, "/initial/8: the vertex is in no face"},
+                "/initial/faces/0: is a quad that is not convex at vertex 3: two triangles can be"},
+        BadMesh{[](SheetScene& s) {
+                  s.faces.push_back({1, 4, 6});
+                },
+                "/initial/faces/4: is the third face at the edge from vertex 1 to 4; an edge has "
+                "one or two"},
+        BadMesh{[](SheetScene& s) { s.faces.pop_back(); },
+                "/initial/vertices/8: the vertex is in no face"},
         BadMesh{
             [](SheetScene& s) {
               s.faces = {{0, 3, 1}, {2, 4, 5}, {6, 7, 4}, {8, 5, 7}};
@@ -90,9 +94,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{[](SheetScene& s) { s.initial.conservativeResize(2, 9); },
                 "/initial: vertices of 2 numbers have not 3"},
         BadMesh{[](SheetScene& s) { s.initial(1, 5) = std::nan(""); },
-                "/initial/5: nan is not within ±1000000000000"},
+                "/initial/vertices/5: nan is not within ±1000000000000"},
         BadMesh{[](SheetScene& s) { s.target(2, 0) = -std::numeric_limits<double>::infinity(); },
-                "/target/0: -inf is not within ±1000000000000"},
+                "/target/vertices/0: -inf is not within ±1000000000000"},
         BadMesh{[](SheetScene& s) { s.target.setZero(); },
                 "/target: size 0 is not >= 1e-12 and 1e-09 of its distance from the origin"},
         BadMesh{[](SheetScene& s) { s.target = (0x1p-10 * s.target).array() + 0x1p31; },

@@ -8,7 +8,7 @@ import pathlib
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Iterable, Mapping, NamedTuple, Sequence, Union
 
-from ._core import DivergedError, InputError, OnOneCore, Result, Scene
+from ._core import DivergedError, InputError, OnOneCore, Result, Scene, Stop
 from .scenes import PathLike, make_scene, read_scene
 from .searches import optimize, optimization_of
 
@@ -53,13 +53,20 @@ def batch(
             for name, scene in map(loaded, listed)
         ]
         return [result_of(name, future) for name, future in futures]
+    stop = Stop()
+
+    def throw_here(name: str, scene: Scene | str) -> Shot:
+        with stop:
+            return throw_shot(name, scene, search)
+
     with ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
-        waiting = [pool.submit(throw_shot, *loaded(shot), search) for shot in listed]
+        waiting = [pool.submit(throw_here, *loaded(shot)) for shot in listed]
         try:
             return [each.result() for each in waiting]
         except BaseException:
             for each in waiting:
                 each.cancel()
+            stop.request()  # and those that fly
             raise
 
 
@@ -106,7 +113,7 @@ def listed_shots(shots: Iterable[ShotInput] | PathLike) -> list[ShotInput]:
             continue
         inside = sorted(map(str, pathlib.Path(shot).glob("*.json")))
         if not inside:
-            raise InputError(f"{os.fspath(shot)}: /: is a folder without a *.json")
+            raise InputError(f"{os.fspath(shot)}: is a folder without a *.json")
         listed.extend(inside)
     return listed
 

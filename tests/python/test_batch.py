@@ -40,7 +40,7 @@ class Batch(unittest.TestCase):
         shots = nuno.batch(scenes, backend="native")
         self.assertEqual([shot.status for shot in shots], ["ok", "broken", "broken", "ok"])
         self.assertEqual(shots[1].reason, "few: /particles: 1 is not within 3 … 1000000")
-        self.assertIn("missing.json: /: cannot be opened", shots[2].reason)
+        self.assertIn("missing.json: cannot be opened", shots[2].reason)
         self.assertIsNone(shots[1].result)
 
     def test_takes_the_options_of_a_search(self):

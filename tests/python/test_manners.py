@@ -105,6 +105,11 @@ class CtrlC(unittest.TestCase):
     def test_ends_a_search(self):
         self.interrupt(lambda: nuno.optimize(nuno.make_scene(LONG)))
 
+    def test_ends_a_batch(self):
+        self.interrupt(lambda: nuno.batch([LONG] * 3, jobs=2))
+        (shot,) = nuno.batch([RIGHT])  # the next one is thrown
+        self.assertEqual(shot.status, "ok")
+
     def test_leaves_a_backend_that_still_flies(self):
         backend = nuno.Backend(nuno.make_scene(LONG), "box2d")
         self.interrupt(lambda: backend.errors(np.zeros(1)))
