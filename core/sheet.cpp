@@ -141,7 +141,7 @@ class Builder {
     Index at = 0;
     for (const auto& face : faces_) {
       if (face.size() != 4) continue;
-      for (const std::size_t i : {0, 1}) {
+      for (std::size_t i = 0; i < 2; ++i) {
         const double l = length(face[i], face[i + 2]);
         const double shape = face_area(x_, face) / (l * l);
         springs.ends.col(at) << face[i], face[i + 2];

@@ -87,8 +87,10 @@ class Reader {
     std::string what = error.what();  // "[json.exception.…] message", possibly over several lines
     if (const auto end = what.find("] "); end != std::string::npos) what = what.substr(end + 2);
     // What it read last may be as long as the file.
-    if (const auto read = what.find("last read: '"); read != std::string::npos) {
-      const auto start = read + 12, end = what.rfind('\'');
+    for (const std::string_view before : {"last read: '", "number overflow parsing '"}) {
+      const auto found = what.find(before);
+      if (found == std::string::npos) continue;
+      const auto start = found + before.size(), end = what.rfind('\'');
       if (end > start + 60) what.replace(start + 30, end - start - 60, "...");
     }
     throw InputError(fmt::format("{}: /: not JSON: {}", source_, printable(what)));
@@ -269,7 +271,7 @@ Json parse_compact(std::string_view text, const std::string& source, const JsonF
   } catch (const std::bad_alloc&) {
     // A value of JSON takes memory to take apart, and throws in its destructor where there is none.
     static_cast<void>(reader.release());
-    throw InputError(fmt::format("{}: /: needs more memory than there is", source));
+    throw InputError(fmt::format("{}: needs more memory than there is", source));
   }
 }
 

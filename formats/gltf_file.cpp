@@ -134,8 +134,9 @@ std::size_t find_target(const GltfItem& mesh, const std::string& name) {
   if (name.empty() && count == 1) return 0;
   const auto found = std::ranges::find(names, name);
   if (found == names.end()) {
+    constexpr std::size_t most = 200;
     std::string known = printable(fmt::format("{}", fmt::join(names, ", ")));
-    if (known.size() > 200) known = known.substr(0, 197) + "...";
+    if (known.size() > most) known = shown_text(known, most - 3) + "...";
     mesh.at.refuse(
         name.empty()
             ? fmt::format("has {} morph targets; name one after #: {}", count, known)

@@ -25,8 +25,7 @@ int digit_of_base64(char c) {
 
 }  // namespace
 
-std::string shown_text(std::string_view value) {
-  constexpr std::size_t most = 60;
+std::string shown_text(std::string_view value, std::size_t most) {
   std::string text = printable(std::string(value.substr(0, most)));
   std::size_t end = std::min(most, text.size());  // what is no UTF-8 has become longer
   while (end < text.size() && (text[end] & '\xc0') == '\x80') --end;

@@ -23,8 +23,8 @@ struct Line {
   [[noreturn]] void refuse(std::string_view value, const std::string& rule) const;
 };
 
-/// A value as a message shows it: on one line, cut where it is long.
-std::string shown_text(std::string_view value);
+/// A value as a message shows it: on one line, of at most `most` bytes, cut between two characters.
+std::string shown_text(std::string_view value, std::size_t most = 60);
 
 /// Appends the bytes of a text in base64, and returns where it is none any more: its size if all
 /// is.

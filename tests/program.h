@@ -124,9 +124,10 @@ class Process {
     }
   }
 
-  /// Exit status, or minus the signal. A program that hangs is killed after two minutes.
+  /// Exit status, or minus the signal. A program that hangs is killed after ten minutes: a
+  /// machine that is busy takes some for the work of a second.
   int wait() const {
-    const auto deadline = std::chrono::steady_clock::now() + 120s;
+    const auto deadline = std::chrono::steady_clock::now() + 600s;
     int status = 0;
     while (waitpid(id_, &status, WNOHANG) == 0) {
       if (std::chrono::steady_clock::now() > deadline) kill(id_, SIGKILL);
