@@ -50,8 +50,8 @@ std::string coarseness(const Rollout& flight, double time_step) {
         100 * error, time_step / std::exp2(halvings),
         error > in_proportion ? "or less is worth a try" : "resolves it");
   }
-  // Segments that turn by much in a step are stretched by it, wherever they end. Of a strain
-  // s = t + 4e, at half of the step t + e, more than half is the step's own, 4e.
+  // Segments that turn by much in a step are stretched by it, wherever they end. It is of second
+  // order: where the strain is t + 4e, half of the step leaves t + e. Told where 4e is over half.
   const double own = 4.0 / 3 * (flight.max_strain - *flight.finer_strain);
   if (flight.max_strain > largest_calm_strain && own > 0.5 * flight.max_strain) {
     return fmt::format(

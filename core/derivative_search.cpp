@@ -30,9 +30,9 @@ struct Knot {
 struct Bracket {
   const Knot* left;
   const Knot* right;
-  int halvings = 0;       ///< that it may take until a cubic knows the paths; 0: it does
-  double minimum = 0;     ///< where the error on the paths is least [u]; where no cubic: the middle
-  double prediction = 0;  ///< that error [m]
+  int halvings = 0;        ///< left, of paths that no cubic knows; at 0, the cubic is believed
+  double minimum = 0;      ///< where the error on the paths is least [u]; to halve: the middle
+  double prediction = 0;   ///< that error [m]
   double lower_bound = 0;  ///< the prediction less what the last one nearby was off [m]
 
   /// Of paths that no cubic knows yet.
@@ -89,7 +89,7 @@ class DerivativeSearch {
   void scan(std::span<const double> gains) {
     const std::vector<const Knot*> knots = fly(gains);
     for (std::size_t i = 1; i < knots.size(); ++i) {
-      add_bracket(*knots[i - 1], *knots[i], swings(objective_) ? 3 : 0, 0);
+      add_bracket(*knots[i - 1], *knots[i], swings(objective_) ? most_halvings : 0, 0);
     }
   }
 
@@ -103,7 +103,8 @@ class DerivativeSearch {
   /// Splits the brackets that no cubic knows and, in lanes that would fly empty, those whose lower
   /// bound is least.
   void refine() {
-    std::ranges::sort(brackets_, {}, [](const Bracket& b) { return b.lower_bound; });
+    std::ranges::sort(brackets_, {},
+                      [](const Bracket& b) { return std::pair(b.halvings == 0, b.lower_bound); });
     const auto unknown = static_cast<Index>(
         std::ranges::count_if(brackets_, [](const Bracket& b) { return b.halvings > 0; }));
     const Index batches = std::max<Index>(1, (unknown + options_.brackets - 1) / options_.brackets);
@@ -128,6 +129,8 @@ class DerivativeSearch {
   }
 
  private:
+  static constexpr int most_halvings = 3;
+
   std::vector<const Knot*> fly(std::span<const double> gains) {
     const double calm =
         swings(objective_) ? calm_gain_scales * objective_.gain_scale : objective_.largest_gain;

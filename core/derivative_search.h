@@ -6,9 +6,9 @@
 
 namespace nuno {
 
-/// Searches between `gains`, which ascend, with the objective's derivatives: all valleys at once, a
-/// batch a round. Adds what it tried to the summary's history and evaluations. Whether it came to
-/// an end before the rounds ran out.
+/// Searches all valleys between `gains`, which ascend, at once, with the objective's derivatives.
+/// Adds what it tried to the summary's history and evaluations. False where the rounds ran out
+/// before the end.
 bool search_with_derivatives(const Objective& objective, std::span<const double> gains,
                              const GlobalSearchOptions& options, OptimizeSummary& summary);
 

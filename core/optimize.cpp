@@ -186,7 +186,9 @@ bool search_warm(const Objective& objective, const GlobalSearchOptions& options,
   const double start = options.warm_start.value_or(0);
   if (!objective.samples || !(start > 0 && start < objective.largest_gain)) return false;
   const std::vector<double> gains = gains_around(objective, start);
-  search_with_derivatives(objective, gains, options, summary);
+  const bool done = search_with_derivatives(objective, gains, options, summary);
+  summary.status = done ? OptimizeStatus::converged : OptimizeStatus::budget;
+  if (summary.history.empty()) return false;  // all of it is noise
   const double gain = lowest(summary, objective.negligible).gain;
   return gain > gains.front() && gain < gains.back();
 }
@@ -241,12 +243,11 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
     // Samples tell noise from the rest.
     largest = objective.samples ? range.largest : range.calm;
     why_largest = range.why;
-    // Where it swings, the search with derivatives halves gaps that it cannot see through, and
-    // needs no more than a gain a radian.
-    const auto [scan, apart] = !objective.samples ? std::pair(3 * options.scan, 0.5)
-                               : swings(objective)
-                                   ? std::pair(std::min<Index>(options.scan, 10), 2.0)
-                                   : std::pair(options.scan, 2.0);
+    // Where E swings, derivatives halve the gaps that no cubic sees through: a gain a radian is
+    // enough up to φ = 10, one in two radians beyond.
+    Index scan = objective.samples ? options.scan : 3 * options.scan;
+    if (objective.samples && swings(objective)) scan = std::min<Index>(scan, 10);
+    const double apart = objective.samples ? 2.0 : 0.5;
     const std::vector<double> gains = scan_gains(objective, options, largest, scan, apart);
     bool done = true;
     if (objective.samples) {
@@ -259,7 +260,7 @@ OptimizeSummary global_search(const Objective& objective, const GlobalSearchOpti
       if (!beyond.empty()) search_by_values(objective, beyond, options, summary);
     }
     summary.evaluations += range.evaluations;
-    if (!done) summary.status = OptimizeStatus::budget;
+    summary.status = done ? OptimizeStatus::converged : OptimizeStatus::budget;
     summary.reason = done
                          ? fmt::format("of {} gains scanned and the valleys between", gains.size())
                          : fmt::format("{} rounds were not enough for all valleys", options.rounds);

@@ -17,8 +17,8 @@ ParetoPoint point_at(const Backend& backend, double gain,
   return {gain, flight.error.mean, flight.control_effort};
 }
 
-/// Adds the best of a search, and those of it that no smaller gain beats. It tries the bottom of a
-/// valley many times: of gains that are all but as good, the smallest.
+/// Adds the best of a search, and those of it that are clearly nearer than all smaller ones: it
+/// tries the bottom of a valley many times.
 void add_unbeaten_gains(std::span<const Evaluation> tried, std::vector<double>& gains) {
   if (tried.empty()) return;
   constexpr double worth = 0.01;  // of the error
@@ -30,7 +30,8 @@ void add_unbeaten_gains(std::span<const Evaluation> tried, std::vector<double>& 
     least = at.error;
     gains.push_back(at.gain);
   }
-  gains.push_back(std::ranges::min_element(ascending, {}, &Evaluation::error)->gain);
+  const double best = std::ranges::min_element(ascending, {}, &Evaluation::error)->gain;
+  if (gains.empty() || gains.back() != best) gains.push_back(best);
 }
 
 /// Halves the gains between two points, one on either side of a limit, until they meet; gives the

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <thread>
 
 namespace nuno {
 namespace {
@@ -27,16 +28,21 @@ Optimization search_gain(const SearchOptions& options, const SceneFile& file,
   return found;
 }
 
+constexpr Index gains_of_front = 64;
+
 /// The gain that keeps a limit at the least cost; if none does, the nearest to it.
-Optimization search_front(const SearchOptions& options, const Backend& backend) {
+Optimization search_front(const SearchOptions& options, const SceneFile& file,
+                          const Backend& backend, Telling telling) {
   const auto start = std::chrono::steady_clock::now();
   Optimization found{"pareto-front", {}};
   OptimizeSummary& summary = found.summary;
   std::atomic<Index> rollouts = 0;
   const auto count = [&] { ++rollouts; };
-  const OptimizeSummary least = global_search(objective(backend));
-  rollouts += least.evaluations;
-  found.pareto_front = pareto_front(backend, 64, least.history, count);
+  Objective errors = objective(backend);
+  if (telling == Telling::progress) errors = with_progress(errors, file.scene.name);
+  const OptimizeSummary searched = global_search(errors);
+  rollouts += searched.evaluations;
+  found.pareto_front = pareto_front(backend, gains_of_front, searched.history, count);
   summary.evaluations = rollouts;
   if (found.pareto_front.empty()) return found;  // every rollout diverged
   ParetoPoint point;
@@ -61,12 +67,17 @@ Optimization search_front(const SearchOptions& options, const Backend& backend) 
 
 Optimization search_single(const SearchOptions& options, const SceneFile& file,
                            const Backend& backend, Telling telling) {
+  const bool has_limit = options.error_limit || options.effort_limit;
   std::optional<LongWork> told;
   if (telling == Telling::progress) {
-    told.emplace(backend, file.scene.name, flights_of_search(backend));
+    // A limit takes the front's flights besides, over all cores, and 30 halvings one by one.
+    const double more =
+        has_limit ? gains_of_front / std::max(1.0, 1.0 * std::thread::hardware_concurrency()) + 30
+                  : 0;
+    told.emplace(backend, file.scene.name, flights_of_search(backend) + more);
   }
-  return options.error_limit || options.effort_limit ? search_front(options, backend)
-                                                     : search_gain(options, file, backend, telling);
+  return has_limit ? search_front(options, file, backend, telling)
+                   : search_gain(options, file, backend, telling);
 }
 
 /// Whether a flight serves the asked better than another: one within the limits than one without;

@@ -6,7 +6,7 @@
 namespace nuno {
 
 /// When work tells a person off a terminal how far it is: not in its first ten seconds, then at
-/// most every half minute. All threads work at the same for a person.
+/// most every half minute. One for all threads: to a person they do one work.
 class ProgressPace {
  public:
   using Time = std::chrono::steady_clock::time_point;

@@ -83,7 +83,7 @@ void fly_along_lanes(const ChainPlan& plan, const RolloutState& start, double ga
     const Vec2<T> center{divide(sums.position.x, particles), divide(sums.position.y, particles)};
     const Vec2<T> drift{divide(sums.velocity.x, particles), divide(sums.velocity.y, particles)};
     sums = advance<damped_control>(
-        plan, step == 0, x.get(), v.get(), Scratch<T>(scratch),
+        plan, step == 0, x.get(), v.get(), scratch.parts(),
         [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity) NUNO_INLINE_LAMBDA {
           const Vec2<T> place{with_derivatives(shape[2 * j], share * correction[j].x),
                               with_derivatives(shape[2 * j + 1], share * correction[j].y)};

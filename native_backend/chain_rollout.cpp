@@ -96,16 +96,17 @@ void fly_lanes(const ChainPlan& plan, ReferenceMotion reference, const double* i
           n, {zero, zero}, [&](Index j) NUNO_INLINE_LAMBDA { return offset(j, x[j]); },
           [&](Index j) NUNO_INLINE_LAMBDA { return lag(j, v[j]); });
     }
-    sums = advance<damped_control>(plan, step == 0, x.get(), v.get(), Scratch<T>(scratch),
-                                   [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity)
-                                       NUNO_INLINE_LAMBDA {
-                                         Vec2<T> force = gain * offset(j, position);
-                                         if constexpr (damped_control)
-                                           force = force + damping * lag(j, velocity);
-                                         if constexpr (control == Control::grouped)
-                                           force = low_modes.add_to(force, j);
-                                         return force;
-                                       });
+    const auto control_force = [&](Index j, const Vec2<T>& position, const Vec2<T>& velocity)
+                                   NUNO_INLINE_LAMBDA {
+                                     Vec2<T> force = gain * offset(j, position);
+                                     if constexpr (damped_control)
+                                       force = force + damping * lag(j, velocity);
+                                     if constexpr (control == Control::grouped)
+                                       force = low_modes.add_to(force, j);
+                                     return force;
+                                   };
+    sums =
+        advance<damped_control>(plan, step == 0, x.get(), v.get(), scratch.parts(), control_force);
     reference.advance();
   }
   const Index count = gains.flights();

@@ -147,10 +147,11 @@ HWY_INLINE void go_up(const ChainPlan& plan, const ChainPlan::Kick& kick, const 
   eliminate(n - 2, zero);
 }
 
-/// Moves a particle with its new velocity and adds it to the sums, which begin with the last one.
+/// Moves a particle with its new velocity and adds it to the sums, which are always made from the
+/// last particle on.
 template <bool damped_control, typename T>
-HWY_INLINE void move(const ChainPlan& plan, Index i, Vec2<T> velocity, Vec2<T>* x, Vec2<T>* v,
-                     Sums<T>& sums) {
+HWY_INLINE void move_particle(const ChainPlan& plan, Index i, Vec2<T> velocity, Vec2<T>* x,
+                              Vec2<T>* v, Sums<T>& sums) {
   v[i] = velocity;
   x[i] = {scale_add(plan.h, velocity.x, x[i].x), scale_add(plan.h, velocity.y, x[i].y)};
   sums.position = sums.position + x[i];
@@ -182,6 +183,7 @@ struct Scratch {
   StiffTangent<T>* tangents = nullptr;
 };
 
+/// Memory for it, as much as the plan's hinges need.
 template <typename T>
 class OwnScratch {
  public:
@@ -194,7 +196,7 @@ class OwnScratch {
       if constexpr (has_derivative<T>) tangents_.reset(new StiffTangent<T>[size]);
     }
   }
-  operator Scratch<T>() const { return {segments_.get(), stiff_segments_.get(), tangents_.get()}; }
+  Scratch<T> parts() const { return {segments_.get(), stiff_segments_.get(), tangents_.get()}; }
 
  private:
   std::unique_ptr<Segment<T>[]> segments_;
@@ -209,8 +211,9 @@ HWY_INLINE Sums<T> advance(const ChainPlan& plan, bool first, Vec2<T>* x, Vec2<T
   const ChainPlan::Kick& kick = first ? plan.first : plan.full;
   const T zero = Constant<T>::of(0);
   Sums<T> sums{{zero, zero}, {zero, zero}};
-  const auto set = [&](Index i, Vec2<T> velocity)
-                       NUNO_INLINE_LAMBDA { move<damped_control>(plan, i, velocity, x, v, sums); };
+  const auto set = [&](Index i, Vec2<T> velocity) NUNO_INLINE_LAMBDA {
+    move_particle<damped_control>(plan, i, velocity, x, v, sums);
+  };
   if (plan.implicit_hinges) {
     go_up_stiff(plan, kick, x, v, scratch.stiff_segments, scratch.tangents, external);
     if constexpr (has_derivative<T>) {

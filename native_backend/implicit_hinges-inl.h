@@ -55,14 +55,14 @@ struct StiffSegment {
   TensionRow<Value> tension;
 };
 
-/// What their derivatives need besides: nothing where there are none.
+/// What a segment's derivatives need besides; empty for a number without them.
 template <typename T>
 struct StiffTangent {};
 template <typename T, typename S>
 struct StiffTangent<Dual<T, S>> {
   T moment_inverse, tension_inverse;  ///< 1/D
-  S moment,
-      tension;  ///< first what the right side has of old velocities; then see MomentRow::value
+  /// First what the right side has of old places and velocities; then see MomentRow::value.
+  S moment, tension;
 };
 
 /// What the elimination of a row needs of the two blocks below.
@@ -138,6 +138,22 @@ HWY_INLINE void eliminate_tension(const HingeEntries<T>& hinge, T lower, double 
       neg_mul_add(l.l2, one_below.tension.value, neg_mul_add(l.l3, one_below.moment.value, right)));
 }
 
+/// A segment before the kick.
+template <typename T>
+struct SegmentMotion {
+  Vec2<T> direction;
+  T inverse, spin;        ///< 1/l, φ̇
+  T stretch, stretching;  ///< l − ℓ and its rate
+};
+template <typename T>
+HWY_INLINE SegmentMotion<T> motion_of(Vec2<T> span, Vec2<T> rate, double rest_length) {
+  const T squared = dot(span, span);
+  const T inverse = rsqrt(squared);
+  const Vec2<T> t = inverse * span;
+  return {t, inverse, cross(t, rate) * inverse, shift(-rest_length, squared * inverse),
+          dot(t, rate)};
+}
+
 /// On the way up: kicks with the external forces and eliminates tensions and moments.
 template <typename T, typename External>
 HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, const Vec2<T>* x,
@@ -161,16 +177,11 @@ HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, 
   kick_particle(0);
   for (Index i = 0; i + 1 < n; ++i) {
     const Vec2<T> old_above = v[i + 1];
-    const Vec2<T> span = x[i + 1] - x[i], rate = old_above - old_below;
-    const T squared = dot(span, span);
-    const T inverse = rsqrt(squared);
-    const Vec2<T> t = inverse * span;
-    const T spin = cross(t, rate) * inverse;
+    const auto [t, inverse, spin, stretch, stretching] = motion_of(
+        x[i + 1] - x[i], old_above - old_below, plan.rest_length[static_cast<std::size_t>(i)]);
     kick_particle(i + 1);
     const Vec2<Value> kicked = value_of(v[i + 1]) - value_of(v[i]);
     const Value turn = cross(value_of(t), kicked) * value_of(inverse);
-    const T stretch = shift(-plan.rest_length[static_cast<std::size_t>(i)], squared * inverse);
-    const T stretching = dot(t, rate);
     const Value strain =
         scale_add(kick.strain, value_of(stretch),
                   scale_add(kick.rate, value_of(stretching), dot(value_of(t), kicked)));
@@ -214,8 +225,8 @@ HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, 
   }
 }
 
-/// Substitutes on the way down: τ, or its derivatives, of a segment and the hinge below it after
-/// another. L is made of numbers Value.
+/// The substitution on the way down, of τ or of its derivatives (T), a segment and the hinge at its
+/// lower end at a time. Value is the number of L.
 template <typename Value, typename T>
 struct BackSubstitution {
   // τ of the hinge and segment above and of the hinge above those; the rows of L that lead there.

@@ -61,9 +61,9 @@ class Work {
 void obey(std::stop_token stop) { obeyed = std::move(stop); }
 
 void without_lock(const std::function<void()>& work, const std::stop_source& stop) {
+  const std::stop_callback passed_on(obeyed, [&stop] { stop.request_stop(); });
   if (!in_main_thread()) {
     const py::gil_scoped_release unlocked;
-    const std::stop_callback passed_on(obeyed, [&stop] { stop.request_stop(); });
     work();
     return;
   }

@@ -10,8 +10,8 @@ void obey(std::stop_token stop);
 
 /// Does work while other threads of Python run. Where it is called by Python's main thread, the one
 /// that a signal reaches, an exception of the signal's handler (Ctrl-C: KeyboardInterrupt) requests
-/// `stop`, which ends the work at its next step, and is thrown here. In other threads, what they
-/// obey requests it.
+/// `stop`, which ends the work at its next step, and is thrown here. What the thread obeys requests
+/// it too.
 void without_lock(const std::function<void()>& work, const std::stop_source& stop);
 
 }  // namespace nuno::python

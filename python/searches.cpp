@@ -139,8 +139,9 @@ void add_searches(py::module_& module) {
       .def(py::init<>())
       .def("__enter__", [](HeldCore& self) { self.alone.emplace(); })
       .def("__exit__", [](HeldCore& self, const py::args&) { self.alone.reset(); });
-  py::class_<SharedStop>(module, "Stop",
-                         "In a `with`: this thread's work ends at its next step after `request`.")
+  py::class_<SharedStop>(
+      module, "Stop",
+      "In a `with`, not nested: this thread's work ends at its next step after `request`.")
       .def(py::init<>())
       .def("request", [](const SharedStop& self) { self.source.request_stop(); })
       .def("__enter__", [](const SharedStop& self) { obey(self.source.get_token()); })

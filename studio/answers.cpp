@@ -203,7 +203,7 @@ Answer pareto_front_answer(const Request& request) {
   require_quick(file, *backend, request.options);
   Json points = Json::array();
   const Index count = gains_of_pareto_front(*backend);
-  std::vector<Evaluation> tried;
+  std::vector<Evaluation> tried;  // a search by values takes too long for a page
   if (backend->has_derivatives()) tried = global_search(objective(*backend)).history;
   for (const ParetoPoint& point : pareto_front(*backend, count, tried)) {
     points.push_back(

@@ -11,7 +11,7 @@ namespace {
 // A search for an eye that watches the shape change: a thousandth of the error more or less is
 // below what it sees.
 constexpr GlobalSearchOptions while_changing = {
-    .rounds = 3, .gain_tolerance = 1e-3, .error_tolerance = 1e-3};
+    .rounds = 6, .gain_tolerance = 1e-3, .error_tolerance = 1e-3};
 
 OptimizeSummary search(const Options& options, const Objective& objective) {
   if (!options.warm_start) return run_optimizer(options.optimizer, objective);

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <locale>
+#include <map>
 #include <sstream>
 
 #include "temporary_folder.h"
@@ -181,6 +183,39 @@ TEST(Animation, ThatCountsFramesArrivesAtAWholeOne) {
   }
   EXPECT_THROW(require_animation("a.obj", 1, 24), InputError);  // no # for the number
   require_animation("a-#.obj", 1, 24);
+}
+
+/// Numbers as they are written in half of Europe.
+class CommaForPoint : public std::numpunct<char> {
+  char do_decimal_point() const override { return ','; }
+  char do_thousands_sep() const override { return '.'; }
+  std::string do_grouping() const override { return "\3"; }
+};
+
+TEST(Animation, IsTheSameWhereNumbersHaveACommaForThePoint) {
+  const TemporaryFolder folder;
+  Animation animation = two_triangles();
+  animation.first_frame = 1001;
+  const auto write = [&] {
+    std::map<std::string, std::string> files;
+    write_animation(folder / "a-#.obj", animation);
+    files["a-1001.obj"] = bytes_of(folder / "a-1001.obj");
+    for (const std::string name : {"a.usda", "a.glb", "a.pc2", "a.mdd"}) {
+      write_animation(folder / name, animation);
+      files[name] = bytes_of(folder / name);
+    }
+    return files;
+  };
+  const auto plain = write();
+  const std::locale before = std::locale::global({std::locale(), new CommaForPoint});
+  const auto there = write();
+  const Mesh mesh = read_mesh(folder / "a-1002.obj");
+  std::locale::global(before);
+  for (const auto& [name, bytes] : plain) {
+    EXPECT_FALSE(bytes.empty()) << name;
+    EXPECT_EQ(there.at(name), bytes) << name;
+  }
+  EXPECT_EQ(mesh.vertices, animation.positions[1]);
 }
 
 TEST(Animation, OfAChainIsARibbonOfItsWidth) {

@@ -33,15 +33,14 @@ ChainScene scene_of(const Throw& thrown, Index particles) {
   return scene;
 }
 
-/// Lengths, times and dampings to the ends of what cloth is; of a flight that takes too long on an
-/// engine only where NUNO_LONG_FLIGHTS says how many particle-steps may be taken.
+/// Particle-steps of a flight at most; NUNO_LONG_FLIGHTS allows more.
 double most_work() {
   const char* const wished = std::getenv("NUNO_LONG_FLIGHTS");
   return wished ? std::atof(wished) : 2e4;
 }
 
-/// How far the centroid may be off [m]. The bars of L; and native adds up its places, of which
-/// there are 4 km from the ground to the top of a flight of a minute, in double precision.
+/// How far the centroid may be off [m]. On Box2D 1e-4 L: single precision. Native adds up its
+/// places, 4 km high in a flight of a minute, in double precision.
 double tolerance(std::string_view engine, const Throw& thrown, double gravity) {
   if (engine != "native") return 1e-4 * thrown.length;
   const double height = gravity * thrown.arrival_time * thrown.arrival_time / 8;

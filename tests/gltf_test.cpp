@@ -147,6 +147,18 @@ TEST_F(GltfMesh, TakesPositionsOfEveryTypeNormalisedOrNot) {
   check(float{}, 5126, 0);
 }
 
+TEST_F(GltfMesh, TakesAMorphTargetOfNormalisedNumbers) {
+  Gltf gltf = square_gltf();
+  const std::size_t moves = gltf.add(
+      std::vector<std::int8_t>{0, 127, 0, 0, 127, 0, -127, 127, 0, 0, 127, -128}, 5120, "VEC3");
+  gltf.json["accessors"][moves]["normalized"] = true;
+  gltf.primitive()["targets"][0]["POSITION"] = moves;
+  Points moved = square.colwise() + Eigen::Vector3d::UnitY();
+  moved(0, 2) -= 1;
+  moved(2, 3) -= 1;
+  EXPECT_EQ(read(gltf, "#up").vertices, moved);
+}
+
 TEST_F(GltfMesh, TakesIndicesOfEveryTypeOrNone) {
   const auto check = [&](auto zero, int component_type) {
     using Number = decltype(zero);
@@ -259,6 +271,24 @@ TEST_F(GltfMesh, StandsWhereItsNodeAndThoseAboveItSay) {
       EXPECT_LT((mesh.vertices.col(i) - expected).norm(), 1e-14) << i;
     }
     EXPECT_EQ(mesh.faces[0], (std::vector<Index>{0, 2, 1}));
+  }
+}
+
+TEST_F(GltfMesh, TellsItsMorphTargetsInWholeCharacters) {
+  for (const char* start : {"", "a"}) {  // a cut between two bytes of a character in one of them
+    Gltf gltf = square_gltf();
+    std::string name = start;
+    while (name.size() < 300) name += "é";
+    gltf.json["meshes"][0]["extras"]["targetNames"] = {name};
+    try {
+      (void)read(gltf, "#down");
+      FAIL() << "has no such morph target";
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_EQ(message, printable(message));
+      EXPECT_EQ(message.find("\xef\xbf\xbd"), std::string::npos) << message;
+      EXPECT_TRUE(message.ends_with("éé...")) << message;
+    }
   }
 }
 

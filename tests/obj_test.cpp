@@ -167,6 +167,14 @@ TEST(Obj, CutsPolygonsByTheirShape) {
   }
 }
 
+TEST(Obj, CutsPolygonsWhoseCornersAreCountedBack) {
+  const std::string arrow = "v 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 3 0\nv 1 1 0\n";
+  const Mesh forward = parse_obj(arrow + "f 1 2 3 4 5\n", "a.obj");
+  EXPECT_EQ(forward.faces.size(), 3u);
+  EXPECT_NEAR(signed_area(forward.vertices, forward.faces, Eigen::Vector3d::UnitZ()), 5, 1e-12);
+  EXPECT_EQ(parse_obj(arrow + "f -5 -4 -3 -2 -1\n", "a.obj").faces, forward.faces);
+}
+
 TEST(Obj, LeavesTrianglesAndQuadsWhole) {
   Mesh mesh = parse_obj(square + "f 1/1 2/2 3/3\nf 1/1 2/2 3/3 4/4\n", "a.obj");
   const Faces faces = mesh.faces, texture = mesh.texture_corners;

@@ -267,6 +267,14 @@ TEST(GainRange, OfADampedControlIsTheEngines) {
   EXPECT_EQ(gain_range(objective).evaluations, 0);
 }
 
+TEST(GlobalSearch, TakesTheWholeRangeWhereTheWarmStartIsNoise) {
+  const Objective objective = swinging(12, 20, true);
+  const OptimizeSummary found = global_search(objective, {.warm_start = 1e4});
+  EXPECT_EQ(found.gain, global_search(objective).gain);
+  EXPECT_NEAR(found.error, 0.9, 1e-6);  // at φ = 3π/2 or 7π/2
+  EXPECT_EQ(found.status, OptimizeStatus::converged);
+}
+
 // The swings go on to φ = 316, and one in a hundred turns is a little deeper than the others.
 TEST(GlobalSearch, FollowsTheSwingsOfAControlWithoutDamping) {
   constexpr double deepest = 201.5;

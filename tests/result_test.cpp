@@ -55,7 +55,7 @@ TEST_F(Result, OfALimitCountsEveryRollout) {
   EXPECT_LT(result["optimization"]["evaluations"], 2 * best["evaluations"].get<int>() + others);
 }
 
-TEST_F(Result, OfTheSearchsErrorAsALimitIsItsGain) {
+TEST_F(Result, OfTheSearchsErrorAsALimitKeepsIt) {
   const Json best = simulated({"optimize", scene("s-curve-32")});
   const double error = best["error"]["relative"];
   const std::string limit = std::to_string(1.001 * error);  // 0.9 %, far below other gains

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import os
 import pathlib
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, Iterable, Mapping, NamedTuple, Sequence, Union
 
 from ._core import DivergedError, InputError, OnOneCore, Result, Scene, Stop
@@ -60,8 +60,10 @@ def batch(
             return throw_shot(name, scene, search)
 
     with ThreadPoolExecutor(jobs or os.cpu_count()) as pool:
-        waiting = [pool.submit(throw_here, *loaded(shot)) for shot in listed]
+        waiting: list[Future[Shot]] = []
         try:
+            for shot in listed:
+                waiting.append(pool.submit(throw_here, *loaded(shot)))
             return [each.result() for each in waiting]
         except BaseException:
             for each in waiting:

@@ -85,12 +85,13 @@ OptimizeSummary steepest_descent(const Objective& objective,
 struct GlobalSearchOptions {
   double smallest_gain = 1e-2;  ///< of the scan, in gain scales, > 0
   double largest_gain = 1e5;    ///< of the scan, in gain scales; cut to the objective's range
-  /// Gains of the scan, 0 among them, ≥ 4. Where control is not damped, at most 10 end at 100 gain
-  /// scales and others follow, two radians of phase apart, nearer where the arrivals part. By
-  /// values, thrice as many, and half a radian apart.
+  /// Gains of the scan, 0 among them, ≥ 4; thrice as many by values. Where control is not damped,
+  /// they end at 100 gain scales (with derivatives, 10 of them do) and others follow: by values
+  /// half a radian of phase apart, with derivatives two, and gaps that no cubic sees through are
+  /// halved.
   Index scan = 24;
-  Index brackets = 8;             ///< refined in a round (by values: valleys in all), ≥ 1
-  Index rounds = 12;              ///< of refinement at most, ≥ 1; by values, a rollout each
+  Index brackets = 8;  ///< split in a batch, ≥ 1 (by values: valleys in all)
+  Index rounds = 12;   ///< at most, ≥ 1, those that halve gaps too; by values, a rollout each
   double gain_tolerance = 1e-6;   ///< of √α, relative; a bracket so narrow is done
   double error_tolerance = 1e-6;  ///< relative; done when no bracket predicts so much less
   /// The best gain of a scene that differs little [N/m]: with derivatives, its valley is searched,
@@ -99,7 +100,7 @@ struct GlobalSearchOptions {
 };
 
 /// A scan, then a refinement of the deepest valleys: where the objective knows its derivatives, on
-/// cubics through the arrivals of all particles, a round for all valleys in one batch; otherwise by
+/// cubics through the arrivals of all particles, all valleys in a round; otherwise by
 /// Brent's method in one valley after another. Never worse than any gain that it has tried; a
 /// valley narrower than the scan, as fragile flights have, may stay unseen.
 OptimizeSummary global_search(const Objective& objective, const GlobalSearchOptions& options = {});

@@ -22,9 +22,10 @@ struct ParetoPoint {
 std::vector<ParetoPoint> pareto_optimal(std::vector<ParetoPoint> points);
 
 /// The Pareto front of a backend's problem: among launch only, gains that are log-spaced over the
-/// objective's range, `count` of them, and those of a search, `tried`, that no smaller one of it
-/// beats: its valleys may lie between. `before_rollout` is called before every rollout, by several
-/// threads at once; what it throws ends the work and comes out of here.
+/// objective's range, `count` ≥ 2 of them, and of those that a search has `tried` the nearest, and
+/// each that comes at least 1 % nearer than all smaller ones: its valleys may lie between.
+/// `before_rollout` is called before every rollout, by several threads at once; what it throws ends
+/// the work and comes out of here.
 std::vector<ParetoPoint> pareto_front(const Backend& backend, Index count = 64,
                                       std::span<const Evaluation> tried = {},
                                       const std::function<void()>& before_rollout = {});

@@ -57,7 +57,8 @@ Points perturbed(const Problem& problem, double size, unsigned seed = 0);
 /// How much a small perturbation at the start has grown by arrival: mean displacement at the end
 /// over mean displacement at the start, of `flight` against a twin from perturbed positions. A
 /// flight above 10 is fragile: engines, steps and machines need not agree on it. Saturates where
-/// the twins have nothing in common any more.
+/// the twins have nothing in common any more. The perturbation is the backend's smallest, or a
+/// thousand last digits of the farthest coordinate.
 double sensitivity(const Backend& backend, const Rollout& flight);
 
 /// Whether these positions [d × N] are no cloth any more: an edge of a thousand times its length,

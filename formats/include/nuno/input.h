@@ -15,7 +15,7 @@ std::string name_of_input(const std::string& path);
 std::string read_file(const std::string& path, const std::string& at, const char* what,
                       std::size_t most = std::numeric_limits<std::size_t>::max());
 
-/// The same of a file of JSON, which messages name.
+/// The same of a file of JSON; messages begin with its name.
 std::string read_input(const std::string& path);
 
 }  // namespace nuno
