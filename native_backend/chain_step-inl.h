@@ -180,7 +180,7 @@ template <typename T>
 struct Scratch {
   Segment<T>* segments = nullptr;
   StiffSegment<T>* stiff_segments = nullptr;
-  StiffTangent<T>* tangents = nullptr;
+  StiffDerivative<T>* derivatives = nullptr;
 };
 
 /// Memory for it, as much as the plan's hinges need.
@@ -193,15 +193,15 @@ class OwnScratch {
       segments_.reset(new Segment<T>[size]);
     } else {
       stiff_segments_.reset(new StiffSegment<T>[size]);
-      if constexpr (has_derivative<T>) tangents_.reset(new StiffTangent<T>[size]);
+      if constexpr (has_derivative<T>) derivatives_.reset(new StiffDerivative<T>[size]);
     }
   }
-  Scratch<T> parts() const { return {segments_.get(), stiff_segments_.get(), tangents_.get()}; }
+  Scratch<T> parts() const { return {segments_.get(), stiff_segments_.get(), derivatives_.get()}; }
 
  private:
   std::unique_ptr<Segment<T>[]> segments_;
   std::unique_ptr<StiffSegment<T>[]> stiff_segments_;
-  std::unique_ptr<StiffTangent<T>[]> tangents_;
+  std::unique_ptr<StiffDerivative<T>[]> derivatives_;
 };
 
 /// One step. `external(j, x, v)` is the force on particle j; returns the sums after the step.
@@ -215,11 +215,11 @@ HWY_INLINE Sums<T> advance(const ChainPlan& plan, bool first, Vec2<T>* x, Vec2<T
     move_particle<damped_control>(plan, i, velocity, x, v, sums);
   };
   if (plan.implicit_hinges) {
-    go_up_stiff(plan, kick, x, v, scratch.stiff_segments, scratch.tangents, external);
+    go_up_stiff(plan, kick, x, v, scratch.stiff_segments, scratch.derivatives, external);
     if constexpr (has_derivative<T>) {
       go_down_stiff(plan, v, scratch.stiff_segments,
                     [&](Index i, Vec2<T> velocity) NUNO_INLINE_LAMBDA { v[i] = velocity; });
-      solve_tangents(plan, v, scratch.stiff_segments, scratch.tangents);
+      solve_derivatives(plan, v, scratch.stiff_segments, scratch.derivatives);
       for (Index i = plan.particles; i-- > 0;) set(i, v[i]);
     } else {
       go_down_stiff(plan, v, scratch.stiff_segments, set);

@@ -57,9 +57,9 @@ struct StiffSegment {
 
 /// What a segment's derivatives need besides; empty for a number without them.
 template <typename T>
-struct StiffTangent {};
+struct StiffDerivative {};
 template <typename T, typename S>
-struct StiffTangent<Dual<T, S>> {
+struct StiffDerivative<Dual<T, S>> {
   T moment_inverse, tension_inverse;  ///< 1/D
   /// First what the right side has of old places and velocities; then see MomentRow::value.
   S moment, tension;
@@ -157,7 +157,7 @@ HWY_INLINE SegmentMotion<T> motion_of(Vec2<T> span, Vec2<T> rate, double rest_le
 /// On the way up: kicks with the external forces and eliminates tensions and moments.
 template <typename T, typename External>
 HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, const Vec2<T>* x,
-                            Vec2<T>* v, StiffSegment<T>* segments, StiffTangent<T>* tangents,
+                            Vec2<T>* v, StiffSegment<T>* segments, StiffDerivative<T>* derivatives,
                             External&& external) {
   using Value = typename Constant<T>::Value;
   const Index n = plan.particles;
@@ -210,9 +210,10 @@ HWY_INLINE void go_up_stiff(const ChainPlan& plan, const ChainPlan::Kick& kick, 
     s.moment.value = row.moment.value * row.moment_inverse;
     s.tension.value = row.tension.value * row.tension_inverse;
     if constexpr (has_derivative<T>) {
-      tangents[i] = {row.moment_inverse, row.tension_inverse,
-                     scale_add(kick.hinge_strain, bend, scale(kick.hinge_rate, bending)).derivative,
-                     scale_add(kick.strain, stretch, scale(kick.rate, stretching)).derivative};
+      derivatives[i] = {
+          row.moment_inverse, row.tension_inverse,
+          scale_add(kick.hinge_strain, bend, scale(kick.hinge_rate, bending)).derivative,
+          scale_add(kick.strain, stretch, scale(kick.rate, stretching)).derivative};
     }
 
     two_below = one_below;
@@ -291,9 +292,9 @@ HWY_INLINE void go_down_stiff(const ChainPlan& plan, const Vec2<T>* v,
 ///     A·dτ = d(g·u) + d((K/c⁺)·s + (c⁻/c⁺)·ṡ),
 /// solved with the L·D·Lᵀ of A. Up and down once more, and no factor is differentiated.
 template <typename T, typename S>
-HWY_INLINE void solve_tangents(const ChainPlan& plan, Vec2<Dual<T, S>>* v,
-                               const StiffSegment<Dual<T, S>>* segments,
-                               StiffTangent<Dual<T, S>>* tangents) {
+HWY_INLINE void solve_derivatives(const ChainPlan& plan, Vec2<Dual<T, S>>* v,
+                                  const StiffSegment<Dual<T, S>>* segments,
+                                  StiffDerivative<Dual<T, S>>* derivatives) {
   using Number = Dual<T, S>;
   const Index n = plan.particles;
   const S zero(0.0);
@@ -301,7 +302,7 @@ HWY_INLINE void solve_tangents(const ChainPlan& plan, Vec2<Dual<T, S>>* v,
   S turn_below = zero;
   for (Index i = 0; i + 1 < n; ++i) {
     const StiffSegment<Number>& s = segments[i];
-    StiffTangent<Number>& tangent = tangents[i];
+    StiffDerivative<Number>& own = derivatives[i];
     const Vec2<Number> rate = v[i + 1] - v[i];
     const S turn = (cross(s.direction, rate) * s.inverse).derivative;
     const S moment = neg_mul_add(
@@ -309,14 +310,14 @@ HWY_INLINE void solve_tangents(const ChainPlan& plan, Vec2<Dual<T, S>>* v,
         neg_mul_add(
             s.moment.l2, moment_1,
             neg_mul_add(s.moment.l3, tension_2,
-                        neg_mul_add(s.moment.l4, moment_2, tangent.moment + (turn - turn_below)))));
-    const S tension =
-        neg_mul_add(s.tension.l1, moment,
-                    neg_mul_add(s.tension.l2, tension_1,
-                                neg_mul_add(s.tension.l3, moment_1,
-                                            tangent.tension + dot(s.direction, rate).derivative)));
-    tangent.moment = tangent.moment_inverse * moment;
-    tangent.tension = tangent.tension_inverse * tension;
+                        neg_mul_add(s.moment.l4, moment_2, own.moment + (turn - turn_below)))));
+    const S tension = neg_mul_add(
+        s.tension.l1, moment,
+        neg_mul_add(
+            s.tension.l2, tension_1,
+            neg_mul_add(s.tension.l3, moment_1, own.tension + dot(s.direction, rate).derivative)));
+    own.moment = own.moment_inverse * moment;
+    own.tension = own.tension_inverse * tension;
     turn_below = turn;
     moment_2 = moment_1;
     moment_1 = moment;
@@ -326,7 +327,8 @@ HWY_INLINE void solve_tangents(const ChainPlan& plan, Vec2<Dual<T, S>>* v,
   auto above = BackSubstitution<T, S>::begin();
   for (Index i = n - 1; i-- > 0;) {
     const StiffSegment<Number>& s = segments[i];
-    const auto found = above.next(s.moment, s.tension, tangents[i].moment, tangents[i].tension);
+    const auto found =
+        above.next(s.moment, s.tension, derivatives[i].moment, derivatives[i].tension);
     const S shear = s.inverse.value * found.moment_difference;
     const Vec2<T> t = value_of(s.direction);
     const Vec2<S> pull{neg_mul_add(t.y, shear, t.x * found.tension),

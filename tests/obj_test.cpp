@@ -169,10 +169,15 @@ TEST(Obj, CutsPolygonsByTheirShape) {
 
 TEST(Obj, CutsPolygonsWhoseCornersAreCountedBack) {
   const std::string arrow = "v 0 0 0\nv 4 2 0\nv 0 4 0\nv 1 3 0\nv 1 1 0\n";
-  const Mesh forward = parse_obj(arrow + "f 1 2 3 4 5\n", "a.obj");
+  const auto cut = [&](const char* face) {
+    Mesh mesh = parse_obj(arrow + face, "a.obj");
+    cut_polygons(mesh);
+    return mesh;
+  };
+  const Mesh forward = cut("f 1 2 3 4 5\n");
   EXPECT_EQ(forward.faces.size(), 3u);
   EXPECT_NEAR(signed_area(forward.vertices, forward.faces, Eigen::Vector3d::UnitZ()), 5, 1e-12);
-  EXPECT_EQ(parse_obj(arrow + "f -5 -4 -3 -2 -1\n", "a.obj").faces, forward.faces);
+  EXPECT_EQ(cut("f -5 -4 -3 -2 -1\n").faces, forward.faces);
 }
 
 TEST(Obj, LeavesTrianglesAndQuadsWhole) {
