@@ -4,12 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "temporary_folder.h"
 
 namespace nuno {
 namespace {
@@ -92,12 +93,17 @@ TEST(SceneMesh, BytesAreReadAsTheirFileIs) {
 
 TEST(SceneMesh, BytesOfGltfOpenNoFile) {
   // A buffer that is there: from a file it would be read.
-  const auto folder = std::filesystem::temp_directory_path();
+  const TemporaryFolder folder;
+  const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  std::ofstream(folder / "hosts", std::ios::binary)
+      .write(reinterpret_cast<const char*>(corners), sizeof(corners));
   const std::string gltf =
       R"({"asset":{"version":"2.0"},"buffers":[{"uri":"hosts","byteLength":36}],)"
       R"("bufferViews":[{"buffer":0,"byteLength":36}],)"
       R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
       R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}]})";
+  std::ofstream(folder / "mesh.gltf") << gltf;
+  EXPECT_EQ(read_mesh(folder / "mesh.gltf").vertices.cols(), 3);
   try {
     parse_mesh(gltf, (folder / "mesh.gltf").string());
     FAIL() << "a file was read";
