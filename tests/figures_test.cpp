@@ -25,7 +25,7 @@ class Pictures : public Program {
   Outcome run(const std::string& command) const {
     const fs::path out = in_folder("stdout"), err = in_folder("stderr");
     const int status =
-        std::system((command + " >" + out.string() + " 2>" + err.string() + " </dev/null").c_str());
+        std::system((command + " >" + word(out) + " 2>" + word(err) + " </dev/null").c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
   }
 
@@ -232,7 +232,7 @@ TEST_F(Pictures, AFilmHasAllItsFramesAndLastsAsLongAsTheFlightAndARest) {
     const Outcome probe =
         run("ffprobe -v error -select_streams v -count_frames -show_entries "
             "stream=nb_read_frames,width,height:format=duration -of json " +
-            film);
+            word(film));
     ASSERT_EQ(probe.status, 0) << probe.err;
     const Json found = Json::parse(probe.out);
     const Json stream = found["streams"][0];
@@ -242,7 +242,7 @@ TEST_F(Pictures, AFilmHasAllItsFramesAndLastsAsLongAsTheFlightAndARest) {
         << extension;
     EXPECT_EQ(stream["width"], extension == "gif" ? 800 : 1600);
     if (extension != "gif") continue;  // the others lose digits: no two pictures are the same
-    const Outcome pictures = run("ffmpeg -v error -i " + film + " -f framemd5 -");
+    const Outcome pictures = run("ffmpeg -v error -i " + word(film) + " -f framemd5 -");
     ASSERT_EQ(pictures.status, 0) << pictures.err;
     std::set<std::string> different;
     std::istringstream lines(pictures.out);
@@ -260,7 +260,8 @@ TEST_F(Pictures, AFilmIsThereWholeOrNotAtAll) {
   for (const std::string extension : {"mp4", "gif", "webm"}) {
     const std::string film = output("film." + extension).string();
     write_text(film, "precious");
-    const std::string render = "exec " NUNO_PROGRAM " render " + file + " --out " + film;
+    const std::string render =
+        "exec " NUNO_PROGRAM " render " + word(file) + " --out " + word(film);
     // The disk is full after a few kilobytes.
     const Outcome full = run("trap '' XFSZ; ulimit -f 8; " + render);
     EXPECT_EQ(full.status, 1) << extension;
@@ -282,7 +283,8 @@ TEST_F(Pictures, AFilmIsThereWholeOrNotAtAll) {
 
 TEST_F(Pictures, WithoutItsProgramsAFilmSaysWhatToInstall) {
   const std::string film = in_folder("film.mp4").string();
-  const Outcome made = run("PATH=/nowhere " NUNO_PROGRAM " render " + result() + " --out " + film);
+  const Outcome made =
+      run("PATH=/nowhere " NUNO_PROGRAM " render " + word(result()) + " --out " + word(film));
   EXPECT_EQ(made.status, 1);
   EXPECT_NE(made.err.find("apt-get install"), std::string::npos) << made.err;
   EXPECT_EQ(std::ranges::count(made.err, '\n'), 1) << made.err;
@@ -343,8 +345,8 @@ TEST_F(Pictures, AResultFarFromTheOriginIsDrawnOrRefusedAtOnce) {
     for (Json& positions : far["frames"]["positions"]) positions = line;
     const std::string file = in_folder("far.json");
     write_text(file, far.dump());
-    return run("sh -c 'ulimit -v 4000000; exec timeout 20 " NUNO_PROGRAM " render " + file +
-               " --out " + in_folder("far.svg").string() + "'");
+    return run("ulimit -v 4000000; exec timeout 20 " NUNO_PROGRAM " render " + word(file) +
+               " --out " + word(in_folder("far.svg")));
   };
   const Outcome refused = rendered_at(1e-7);
   EXPECT_EQ(refused.status, 2) << refused.err;

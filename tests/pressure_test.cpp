@@ -27,7 +27,7 @@ class Pressure : public Program {
   Outcome shell(const std::string& command) const {
     const std::string err = in_folder("shell-err"), out = in_folder("shell-out");
     const std::string whole =
-        "nuno=" NUNO_PROGRAM "; ( " + command + " ) >'" + out + "' 2>'" + err + "'";
+        "nuno=" NUNO_PROGRAM "; ( " + command + " ) >" + word(out) + " 2>" + word(err);
     const int status = std::system(whole.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), read_text(out),
             read_text(err)};
@@ -58,7 +58,7 @@ TEST_F(Pressure, UnknownFieldsAreRefusedAtTheFirst) {
   std::string text = R"({"nuno_scene":1,"initial":[[0,0],[1,0]],"target":[[0,0],[1,0]])";
   for (int i = 0; i < 300'000; ++i) text += ",\"k" + std::to_string(i) + "\":0";
   const std::string scene = file("many.json", text + "}");
-  const Outcome run = shell("ulimit -t 5; exec $nuno simulate " + scene);
+  const Outcome run = shell("ulimit -t 5; exec $nuno simulate " + word(scene));
   EXPECT_EQ(run.status, 2);
   EXPECT_TRUE(run.err.starts_with(scene + ": /k0: \"k0\" is not a known field")) << run.err;
 }
@@ -70,7 +70,7 @@ TEST_F(Pressure, ASceneThatMemoryIsTooShortForIsRefusedByName) {
   for (int kilobytes = 50'000; kilobytes <= 200'000; kilobytes += 50'000) {
     for (const std::string& path : {scene, odd}) {
       const Outcome run =
-          shell("ulimit -v " + std::to_string(kilobytes) + "; exec $nuno simulate " + path);
+          shell("ulimit -v " + std::to_string(kilobytes) + "; exec $nuno simulate " + word(path));
       if (run.status == 127) continue;  // too little for the program itself
       EXPECT_TRUE(run.status == 0 || run.status == 2) << kilobytes << ": " << run.status << run.err;
       EXPECT_TRUE(run.status == 0 || run.err.starts_with(path + ": ")) << run.err;
@@ -98,8 +98,8 @@ TEST_F(Pressure, AFileThatMayNotGrowIsExitStatusOneAndLeavesNothing) {
   write_text(output("result.json"), "precious");
   for (const char* name : {"result.json", "new.json"}) {
     const std::string out = output(name);
-    const Outcome run =
-        shell("ulimit -f 100; exec $nuno simulate " + scene_of_many_frames() + " --out " + out);
+    const Outcome run = shell("ulimit -f 100; exec $nuno simulate " + word(scene_of_many_frames()) +
+                              " --out " + word(out));
     EXPECT_EQ(run.status, 1);
     EXPECT_TRUE(is_one_line(run.err) && run.err.starts_with(out + ": cannot be written"))
         << run.err;
@@ -128,8 +128,8 @@ TEST_F(Pressure, SignalsThatEndItLeaveNothing) {
 }
 
 TEST_F(Pressure, ProcessorTimeThatRunsOutIsSaid) {
-  const Outcome run =
-      shell("ulimit -S -t 1; exec $nuno simulate " + scene("s-curve-32") + " --time-step 5e-8");
+  const Outcome run = shell("ulimit -S -t 1; exec $nuno simulate " + word(scene("s-curve-32")) +
+                            " --time-step 5e-8");
   EXPECT_EQ(run.status, 1);
   EXPECT_TRUE(run.err.ends_with("nuno: the processor time that is allowed has run out\n"))
       << run.err;
@@ -142,16 +142,16 @@ TEST_F(Pressure, RendersWhatComesThroughAPipe) {
   const std::string drawn = read_text(svg);
   const auto same = [&](const std::string& command) {
     fs::remove(svg);
-    const Outcome run = shell(command + " --still --out " + svg);
+    const Outcome run = shell(command + " --still --out " + word(svg));
     EXPECT_EQ(run.status, 0) << command << run.err;
     EXPECT_EQ(read_text(svg), drawn) << command;
   };
-  same("cat " + result + " | $nuno render /dev/stdin");
-  same("cat " + result + " | $nuno render -");
-  same("mkfifo " + std::string(in_folder("pipe")) + "; cat " + result + " >" +
-       std::string(in_folder("pipe")) + " & exec $nuno render " + std::string(in_folder("pipe")));
-  same("cat " + scene("s-curve-32") + " | $nuno render -");
-  const Outcome run = shell("cat " + scene("s-curve-32") + " | $nuno simulate - --out -");
+  same("cat " + word(result) + " | $nuno render /dev/stdin");
+  same("cat " + word(result) + " | $nuno render -");
+  const std::string pipe = word(in_folder("pipe"));
+  same("mkfifo " + pipe + "; cat " + word(result) + " >" + pipe + " & exec $nuno render " + pipe);
+  same("cat " + word(scene("s-curve-32")) + " | $nuno render -");
+  const Outcome run = shell("cat " + word(scene("s-curve-32")) + " | $nuno simulate - --out -");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(shell("echo 3 | $nuno simulate -").err, "standard input: /: 3 is not an object\n");
 }
@@ -189,7 +189,8 @@ TEST_F(Pressure, AFileThatIsReadOnlyStays) {
   fs::permissions(in_folder("outputs"), fs::perms{0777});
   fs::permissions(in_folder(""), fs::perms{0755});
   const std::string cloth = file("scene.json", right_scene().dump());
-  const Outcome run = shell("exec " + as_someone + "$nuno simulate " + cloth + " --out " + out);
+  const Outcome run =
+      shell("exec " + as_someone + "$nuno simulate " + word(cloth) + " --out " + word(out));
   EXPECT_EQ(run.status, 1);
   EXPECT_EQ(run.err, out + ": cannot be written: Permission denied\n");
   EXPECT_EQ(read_text(out), "precious");
@@ -213,8 +214,8 @@ TEST_F(Pressure, WithoutThreadsItWorksOnOne) {
   const std::string cloth = file("scene.json", right_scene().dump());
   const std::string best = nuno({"optimize", cloth, "--backend", "box2d"}).out;
   // Stacks that no thread can have.
-  const Outcome run = shell("ulimit -v 400000; ulimit -s 4000000; exec $nuno optimize " + cloth +
-                            " --backend box2d");
+  const Outcome run = shell("ulimit -v 400000; ulimit -s 4000000; exec $nuno optimize " +
+                            word(cloth) + " --backend box2d");
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_EQ(run.out.substr(0, run.out.find(" rollouts in")),
             best.substr(0, best.find(" rollouts in")));

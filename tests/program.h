@@ -80,6 +80,13 @@ inline int wished(const char* variable, int otherwise) {
   return text ? std::atoi(text) : otherwise;
 }
 
+/// A path as one word of a shell, whatever TMPDIR is called.
+inline std::string word(const std::string& path) {
+  std::string quoted = "'";
+  for (const char c : path) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 /// Whether a program that ours runs is there.
 inline bool is_installed(const std::string& program) {
   return std::system(("command -v " + program + " >/dev/null 2>&1").c_str()) == 0;
