@@ -239,7 +239,7 @@ HWY_INLINE Dual<T, S> neg_mul_add(Dual<T, S> a, Dual<T, S> b, Dual<T, S> c) {
 template <typename T>
 constexpr bool has_derivative = false;
 template <typename T, typename S>
-constexpr bool has_derivative<Dual<T, S>> = true;
+inline constexpr bool has_derivative<Dual<T, S>> = true;
 
 template <typename T>
 HWY_INLINE T value_of(T a) {
