@@ -27,13 +27,21 @@ std::string fragility(double sensitivity) {
       sensitivity);
 }
 
-void measure_step(const Backend& finer, Rollout& flight) {
-  const Rollout there = rollout(finer, flight.gains);
+bool has_doubtful_step(const Cloth& cloth, const Rollout& flight, double sensitivity) {
+  // Of 2 100 calm flights with step errors from 1e-7 to 0.1, on two engines, none is coarse below a
+  // quarter, and seven are below the whole. What is fragile has its word already.
+  const double growth = std::clamp(sensitivity, 1.0, largest_calm_sensitivity);
+  if (!(growth * flight.truncation_error / cloth.size <= largest_step_error / 4)) return true;
+  // An edge that turns by φ in a step is stretched by some φ²/4, at most 2φ², for the step's sake.
+  const double squared_turn = flight.max_turn * flight.max_turn;
+  return flight.max_strain > largest_calm_strain && flight.max_strain < 4 * squared_turn;
+}
+
+void measure_step(const Cloth& cloth, const Rollout& finer, Rollout& flight) {
   flight.step_error = flight.finer_strain = std::numeric_limits<double>::infinity();
-  if (diverged(there)) return;
-  const Cloth& cloth = finer.cloth();
-  flight.step_error = shape_difference(cloth, flight.final, there.final).mean / cloth.size;
-  flight.finer_strain = there.max_strain;
+  if (diverged(finer)) return;
+  flight.step_error = shape_difference(cloth, flight.final, finer.final).mean / cloth.size;
+  flight.finer_strain = finer.max_strain;
 }
 
 std::string coarseness(const Rollout& flight, double time_step) {

@@ -15,11 +15,24 @@ Vector centroid(const Points& points) {
 
 Points shape_of(const Points& points) { return points.colwise() - centroid(points); }
 
+namespace {
+
+template <int dimension>
+Vector mass_center_in(const Points& points, const Vector& relative_mass) {
+  const Eigen::Map<const Eigen::Matrix<double, dimension, Eigen::Dynamic>> fixed(
+      points.data(), dimension, points.cols());
+  Eigen::Matrix<double, dimension, 1> sum = Eigen::Matrix<double, dimension, 1>::Zero();
+  for (Index i = points.cols(); i-- > 0;) sum += relative_mass[i] * fixed.col(i);
+  return sum / static_cast<double>(points.cols());
+}
+
+}  // namespace
+
 Vector mass_center(const Points& points, const Vector& relative_mass) {
   assert(points.cols() > 0 && points.cols() == relative_mass.size());
-  Vector sum = Vector::Zero(points.rows());
-  for (Index i = points.cols(); i-- > 0;) sum += relative_mass[i] * points.col(i);
-  return sum / static_cast<double>(points.cols());
+  assert(points.rows() == 2 || points.rows() == 3);
+  return points.rows() == 2 ? mass_center_in<2>(points, relative_mass)
+                            : mass_center_in<3>(points, relative_mass);
 }
 
 Points shape_of(const Points& points, const Vector& relative_mass) {

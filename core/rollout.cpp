@@ -80,27 +80,92 @@ class VelocityAhead {
   Points told_, before_, reference_before_;
 };
 
-/// Largest |l/ℓ − 1| of the edges; NaN if a position is.
-double largest_strain(const Cloth& cloth, const Points& x) {
-  double largest = 0;
-  for (Index e = 0; e < cloth.rest_length.size(); ++e) {
-    const Index a = cloth.edges(0, e), b = cloth.edges(1, e);
-    double squared = 0;
-    for (Index row = 0; row < x.rows(); ++row) {
-      const double apart = x(row, b) - x(row, a);
-      squared += apart * apart;
+/// Sums up the local truncation error of second-order steps (Verlet's, RATTLE's, the trapezoidal
+/// rule's), which follow ẍ = a + h²/12·ä where they should follow ẍ = a.
+class TruncationError {
+ public:
+  /// The mean velocities over one step after another.
+  void add(const Points& velocities) {
+    if (before_.size() > 0) {
+      const auto particles = static_cast<double>(velocities.cols());
+      if (change_.size() > 0) {
+        sum_ += std::sqrt((velocities - before_ - change_).squaredNorm() / particles);
+      }
+      change_ = velocities - before_;
     }
-    const double strain = std::abs(std::sqrt(squared) / cloth.rest_length[e] - 1);
-    if (std::isnan(strain)) return strain;
-    largest = std::max(largest, strain);
+    before_ = velocities;
   }
-  return largest;
-}
+
+  /// [m] for steps of h [s].
+  double over_flight(double h) const { return h / 12 * sum_; }
+
+ private:
+  Points before_, change_;
+  double sum_ = 0;
+};
+
+/// Measures the edges of a cloth, which outlives it.
+class EdgeMeter {
+ public:
+  explicit EdgeMeter(const Cloth& cloth)
+      : cloth_(cloth), per_square_(cloth.rest_length.array().square().inverse()) {}
+
+  /// Largest |l/ℓ − 1|; NaN if a position is.
+  double strain(const Points& x) const {
+    Index longest = 0, shortest = 0;
+    double most = 0, least = std::numeric_limits<double>::infinity(), sum = 0;
+    for_each_square(x, [&](Index e, double square) {
+      if (square > most) {
+        most = square;
+        longest = e;
+      }
+      if (square < least) {
+        least = square;
+        shortest = e;
+      }
+      sum += square;
+    });
+    if (std::isnan(sum)) return sum;
+    const auto strain_of = [&](Index e) {  // a root and a quotient for two edges, not for all
+      const double length = (x.col(cloth_.edges(1, e)) - x.col(cloth_.edges(0, e))).norm();
+      return std::abs(length / cloth_.rest_length[e] - 1);
+    };
+    return std::max(strain_of(longest), strain_of(shortest));
+  }
+
+  /// Largest difference of the vectors [d × N] at an edge's ends, over ℓ; 0 if one is NaN.
+  double spread(const Points& vectors) const {
+    double most = 0;
+    for_each_square(vectors, [&](Index, double square) { most = std::max(most, square); });
+    return std::sqrt(most);
+  }
+
+ private:
+  /// Calls use(e, |difference at the ends of e|²/ℓ²).
+  template <typename Use>
+  void for_each_square(const Points& x, const Use& use) const {
+    x.rows() == 2 ? for_each_square_in<2>(x, use) : for_each_square_in<3>(x, use);
+  }
+  template <int dimension, typename Use>
+  void for_each_square_in(const Points& x, const Use& use) const {
+    assert(x.rows() == dimension);
+    for (Index e = 0; e < per_square_.size(); ++e) {
+      const double* const a = x.data() + dimension * cloth_.edges(0, e);
+      const double* const b = x.data() + dimension * cloth_.edges(1, e);
+      double square = 0;
+      for (int row = 0; row < dimension; ++row) square += (b[row] - a[row]) * (b[row] - a[row]);
+      use(e, square * per_square_[e]);
+    }
+  }
+
+  const Cloth& cloth_;
+  Vector per_square_;  // 1/ℓ²
+};
 
 }  // namespace
 
 bool is_torn(const Cloth& cloth, const Points& positions) {
-  return !(largest_strain(cloth, positions) < torn_strain);
+  return !(EdgeMeter(cloth).strain(positions) < torn_strain);
 }
 
 double effort_unit(const Problem& problem) {
@@ -144,6 +209,8 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
   double squared_force = 0;
   const bool looks_ahead = problem.is_sheet() && problem.damping_ratio > 0;
   VelocityAhead ahead;
+  TruncationError truncation;
+  const EdgeMeter edges(problem.cloth());
   for (Index n = 0; n < backend.steps(); ++n) {
     if (control.pulls()) {
       control.pull(
@@ -156,14 +223,17 @@ double fly(const Backend& backend, const Gains& gains, Simulation& cloth, Record
     if (n == 0) recorder.record(0, cloth, forces, false);
     cloth.step(forces);
     reference.advance();
-    const double strain = largest_strain(problem.cloth(), cloth.positions());
+    const double strain = edges.strain(cloth.positions());
     if (!(strain < torn_strain)) {
       tell_divergence(problem, n + 1, strain, cloth, result);
       break;
     }
     result.max_strain = std::max(result.max_strain, strain);
+    result.max_turn = std::max(result.max_turn, h * edges.spread(cloth.velocities()));
+    truncation.add(cloth.velocities());
     recorder.record(static_cast<double>(n + 1) * h, cloth, forces, n + 1 == backend.steps());
   }
+  result.truncation_error = truncation.over_flight(h);
   result.final = cloth.positions();
   result.final_velocity = cloth.velocities();
   return squared_force;
@@ -175,11 +245,12 @@ void fly_on(const Backend& backend, double tail, Simulation& cloth, Recorder& re
   const Problem& problem = backend.problem();
   const double h = backend.time_step();
   const Points no_forces = Points::Zero(problem.cloth().dimension(), problem.cloth().particles());
+  const EdgeMeter edges(problem.cloth());
   const auto last = backend.steps() + static_cast<Index>(std::ceil(tail / h * (1 - 1e-9)));
   for (Index n = backend.steps(); n < last; ++n) {
     problem.stop_where_asked();
     cloth.step(no_forces);
-    const double strain = largest_strain(problem.cloth(), cloth.positions());
+    const double strain = edges.strain(cloth.positions());
     if (!(strain < torn_strain)) return tell_divergence(problem, n + 1, strain, cloth, result);
     recorder.record_tail(static_cast<double>(n + 1) * h, cloth, no_forces);
   }

@@ -92,10 +92,9 @@ Finish thrown(Shot& shot, const std::string& engine, const std::stop_token& stop
   if (diverged(flown.flight)) {
     return ends(shot, State::diverged, divergence_message(file.path, backend, flown.flight));
   }
-  const double growth = bounded_sensitivity(backend, flown.flight);
   // As text already: only what waits for the disk is left to the one thread that writes.
   std::string text = written_text([&](std::FILE* result) {
-    write_result(result, file.input, backend, flown.flight, growth, answer.how);
+    write_result(result, file.input, backend, flown.flight, flown.sensitivity, answer.how);
   });
   return [&shot, text = std::move(text)] {
     try {

@@ -28,7 +28,7 @@ void print_shorter_step(std::FILE* people, const SceneFile& file, const Backend&
 ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
                const std::string& out, const AnimationOptions& animation,
                const std::optional<Optimization>& optimization) {
-  // The flight, and those that judge it: its twin, and at half of its step.
+  // The flight, and those that judge it: its twin, and where in doubt at half of its step.
   const LongWork told(asked, file.scene.name, 4);
   // A sheet's are looked at, for where it passes through itself.
   const bool keeps_frames = !out.empty() || file.problem.is_sheet();
@@ -41,9 +41,9 @@ ExitStatus fly(const SceneFile& file, const Backend& asked, const Gains& gains,
     return ExitStatus::diverged;
   }
   const Backend& backend = flown.finer ? *flown.finer : asked;
-  const double growth = bounded_sensitivity(backend, flight);
-  if (!out.empty()) write_flight(out, file, backend, flight, growth, animation, optimization);
-  print_summary(people(out), file.scene.name, backend, flight, growth);
+  if (!out.empty())
+    write_flight(out, file, backend, flight, flown.sensitivity, animation, optimization);
+  print_summary(people(out), file.scene.name, backend, flight, flown.sensitivity);
   if (flown.finer) {
     fmt::print(people(out), "  {:<17} it diverges in {} steps of {}\n", "shorter steps",
                asked.steps(), duration(asked.time_step()));

@@ -194,18 +194,20 @@ std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& 
 
 JudgedRollout judged_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
                              const RolloutOptions& options) {
-  JudgedRollout result{nullptr, rollout(backend, gains, options)};
+  JudgedRollout result{.finer = nullptr, .flight = rollout(backend, gains, options)};
   for (const double share : {1.0 / 4, 1.0 / 16}) {
     if (!diverged(result.flight) || file.scene.time_step) break;
     std::unique_ptr<Backend> finer = at_finer_step(backend, file, share);
     if (!finer) break;
     Rollout flight = rollout(*finer, gains, options);
-    if (!diverged(flight)) result = {std::move(finer), std::move(flight)};
+    if (!diverged(flight)) result = {.finer = std::move(finer), .flight = std::move(flight)};
   }
   if (diverged(result.flight)) return result;
   const Backend& flew = result.finer ? *result.finer : backend;
+  result.sensitivity = bounded_sensitivity(flew, result.flight);
+  if (!has_doubtful_step(flew.cloth(), result.flight, result.sensitivity)) return result;
   if (const auto half = at_finer_step(flew, file, 0.5)) {
-    measure_step(*half, result.flight);
+    measure_step(flew.cloth(), rollout(*half, gains), result.flight);
   }
   return result;
 }

@@ -27,7 +27,8 @@ Json result_head(const std::string& scene, const Backend& backend, const Rollout
                  {"centroid", rollout.error.centroid},
                  {"relative", rollout.error.mean / size}}},
                {"control_effort", rollout.control_effort},
-               {"max_strain", rollout.max_strain}};
+               {"max_strain", rollout.max_strain},
+               {"truncation_error", rollout.truncation_error / size}};
   // Infinity becomes null.
   if (rollout.step_error) head["step_error"] = *rollout.step_error;
   if (rollout.finer_strain) head["finer_strain"] = *rollout.finer_strain;

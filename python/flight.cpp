@@ -122,7 +122,7 @@ py::tuple state_of(const Flight& flight) {
       py::make_tuple(rollout.error.mean, rollout.error.max, rollout.error.centroid),
       rollout.control_effort, rollout.max_strain, numbers(rollout.frame_times),
       numbers(flight.frames), flight.sensitivity, flight.optimization, rollout.step_error,
-      correction, rollout.finer_strain);
+      correction, rollout.finer_strain, rollout.truncation_error);
 }
 
 Flight flight_of_state(const py::tuple& state) {
@@ -150,6 +150,7 @@ Flight flight_of_state(const py::tuple& state) {
   flight.optimization = state[13].cast<std::string>();
   rollout.step_error = state[14].cast<std::optional<double>>();
   rollout.finer_strain = state[16].cast<std::optional<double>>();
+  rollout.truncation_error = state[17].cast<double>();
   for (const py::handle shape : state[15].cast<py::list>()) {
     flight.reference_correction.push_back(points_of(shape.cast<Array>(), 0, 0, "a pickled result"));
   }
@@ -203,11 +204,15 @@ void add_numbers(Class& result) {
   result.def_readonly("sensitivity", &Flight::sensitivity,
                       "How much a small change at the start has grown by arrival [1].");
   result.def_property_readonly(
+      "truncation_error", [](const Flight& self) { return self.rollout.truncation_error; },
+      "Sum of the time steps' local truncation errors, root mean square over the particles [m].");
+  result.def_property_readonly(
       "step_error", [](const Flight& self) { return self.rollout.step_error; },
-      "How far half of the time step moves the end shape, over L [1]; None where not measured.");
+      "How far half of the time step moves the end shape, over L [1]; None where that is not in "
+      "doubt.");
   result.def_property_readonly(
       "finer_strain", [](const Flight& self) { return self.rollout.finer_strain; },
-      "`max_strain` with half of the time step [1]; None where not measured.");
+      "`max_strain` with half of the time step [1], measured beside `step_error`.");
   result.def_property_readonly(
       "fragility", [](const Flight& self) { return fragility(self.sensitivity); },
       "The word of warning for a fragile flight; empty for a calm one.");
@@ -261,7 +266,7 @@ Flight fly(const ScenePointer& scene, const SceneFile& file, const Backend& aske
   if (diverged(flown.flight)) throw Diverged(divergence_message(file.path, asked, flown.flight));
   const Backend& backend = flown.finer ? *flown.finer : asked;
   Flight flight{scene, std::string(backend.name()), backend.steps()};
-  flight.sensitivity = bounded_sensitivity(backend, flown.flight);
+  flight.sensitivity = flown.sensitivity;
   flight.reference_correction = backend.problem().reference_correction;
   flight.rollout = std::move(flown.flight);
   flight.frames = frames_together(std::move(flight.rollout.frame_positions));

@@ -194,6 +194,27 @@ TEST(Conditioning, KnowsARolloutWithoutAnAnswer) {
   EXPECT_TRUE(diverged(flight));
 }
 
+TEST(Conditioning, DoubtsAStepThatMayDeserveAWord) {
+  const Problem problem = problem_of(cross());
+  const double size = problem.cloth().size;
+  const auto is_doubted = [&](double truncation, double growth, double strain, double turn) {
+    Rollout flight;
+    flight.truncation_error = truncation * size;
+    flight.max_strain = strain;
+    flight.max_turn = turn;
+    return has_doubtful_step(problem.cloth(), flight, growth);
+  };
+  EXPECT_FALSE(is_doubted(2.4e-4, 0.1, 0, 0));
+  EXPECT_TRUE(is_doubted(2.6e-4, 0.1, 0, 0));
+  EXPECT_FALSE(is_doubted(1.2e-4, 2, 0, 0));
+  EXPECT_TRUE(is_doubted(1.3e-4, 2, 0, 0));
+  EXPECT_FALSE(is_doubted(2.4e-5, 1e8, 0, 0)) << "fragile, which is a word already";
+  EXPECT_TRUE(is_doubted(nan, 1, 0, 0));
+  EXPECT_FALSE(is_doubted(0, 1, 0.01, 0.049)) << "strained, but not by turning";
+  EXPECT_TRUE(is_doubted(0, 1, 0.01, 0.051));
+  EXPECT_FALSE(is_doubted(0, 1, 0.005, 1)) << "too little to care";
+}
+
 TEST(Conditioning, MeasuresWhatHalfTheStepChanges) {
   // Arrives as a cross of this size, at either step, and elsewhere.
   const auto engine = [](double size) {
@@ -201,12 +222,13 @@ TEST(Conditioning, MeasuresWhatHalfTheStepChanges) {
       return (size * cross()).colwise() + Eigen::Vector2d(7, size);
     });
   };
-  const double length = problem_of(cross()).cloth().size;
+  const Problem problem = problem_of(cross());
+  const Cloth& cloth = problem.cloth();
   Rollout flight = rollout(engine(1), 0);
-  measure_step(engine(1.25), flight);
-  EXPECT_NEAR(flight.step_error.value(), 0.25 / length, 1e-14);
+  measure_step(cloth, rollout(engine(1.25), 0), flight);
+  EXPECT_NEAR(flight.step_error.value(), 0.25 / cloth.size, 1e-14);
   EXPECT_EQ(flight.finer_strain, rollout(engine(1.25), 0).max_strain);
-  measure_step(engine(nan), flight);
+  measure_step(cloth, rollout(engine(nan), 0), flight);
   EXPECT_EQ(flight.step_error, infinity);
   EXPECT_EQ(flight.finer_strain, infinity);
 }

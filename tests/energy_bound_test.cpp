@@ -104,7 +104,7 @@ struct Counts {
 };
 
 void judge(const SceneFile& file, const Backend& backend, double gain, Counts& counts) {
-  const auto [finer, flight] = judged_rollout(backend, file, gain);
+  const auto [finer, flight, growth] = judged_rollout(backend, file, gain);
   ++counts.flights;
   if (diverged(flight)) {
     ++counts.diverged;
@@ -114,8 +114,7 @@ void judge(const SceneFile& file, const Backend& backend, double gain, Counts& c
     return;
   }
   const Backend& flew = finer ? *finer : backend;
-  if (!coarseness(flight, flew.time_step()).empty() ||
-      bounded_sensitivity(flew, flight) > largest_calm_sensitivity) {
+  if (!coarseness(flight, flew.time_step()).empty() || growth > largest_calm_sensitivity) {
     ++counts.told;
     return;
   }

@@ -1,5 +1,6 @@
 // Engines by their names, and what each is asked before it flies.
 
+#include <nuno/conditioning.h>
 #include <nuno/engines.h>
 #include <nuno/rollout.h>
 
@@ -97,6 +98,26 @@ TEST(Optimizers, AreRunByTheirNames) {
   EXPECT_EQ(at_once, 2);  // a difference
   EXPECT_NEAR(run_optimizer("global", objective).gain, 3, 1e-2);
   EXPECT_GT(at_once, 16);
+}
+
+TEST(JudgedRollout, IsFlownAtHalfOfItsStepWhereThatIsInDoubt) {
+  ChainScene scene = scene_library::straight_to_s();
+  scene.launch = Launch::inextensible;
+  const SceneFile file = make_scene_file("scene.json", scene);
+  for (const std::string_view name : chain_engines) {
+    const auto backend = make_backend(name, file);
+    const JudgedRollout calm = judged_rollout(*backend, file, 0.1);
+    EXPECT_EQ(calm.flight.step_error, std::nullopt) << name;
+    EXPECT_EQ(calm.sensitivity, bounded_sensitivity(*backend, calm.flight));
+
+    const JudgedRollout wild = judged_rollout(*backend, file, 30);
+    const auto half = at_finer_step(*backend, file, 0.5);
+    Rollout again = rollout(*backend, 30);
+    measure_step(backend->cloth(), rollout(*half, 30), again);
+    EXPECT_GT(again.step_error, 1e-4);
+    EXPECT_EQ(wild.flight.step_error, again.step_error) << name;
+    EXPECT_EQ(wild.flight.finer_strain, again.finer_strain) << name;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <nuno/shape_control.h>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <limits>
@@ -58,6 +59,30 @@ TEST(ScriptedRollout, HasTheLargestStrainOfTheWholeWay) {
   EXPECT_DOUBLE_EQ(rollout(breathing({1, 1.25, 1.125, 1, 1}), 0).max_strain, 0.25);
   EXPECT_DOUBLE_EQ(rollout(breathing({1, 1.25, 0.5, 1, 1}), 0).max_strain, 0.5);
   EXPECT_DOUBLE_EQ(rollout(breathing({1, 1, 1, 1, 1.75}), 0).max_strain, 0.75);
+}
+
+TEST(ScriptedRollout, HasTheLargestTurnOfAnEdgeInAStep) {
+  constexpr double turn = 0.3;
+  const ScriptedBackend spinning(problem_of(cross()), 5, [](const Moment& now) -> Points {
+    return Eigen::Rotation2Dd(turn * static_cast<double>(now.step)).toRotationMatrix() * cross();
+  });
+  EXPECT_NEAR(rollout(spinning, 0).max_turn, 2 * std::sin(turn / 2), 1e-14);  // a chord
+  EXPECT_EQ(rollout(breathing({1, 1, 1}), 0).max_turn, 0);
+}
+
+TEST(ScriptedRollout, SumsUpTruncationErrorsWhereTheAccelerationChanges) {
+  // x = a·t³ + b·t²: the acceleration changes by 6a·h in every step, and h²/12 of that counts.
+  const Points a{{3, 0, 0, 0}, {4, 0, 0, 0}}, b{{1, 2, 3, 4}, {5, 6, 7, 8}};
+  for (const Index steps : {3, 10}) {
+    const ScriptedBackend engine(problem_of(cross()), steps, [&](const Moment& now) -> Points {
+      const double t = static_cast<double>(now.step) / static_cast<double>(steps);
+      return cross() + t * t * (t * a + b);
+    });
+    const double h = 1 / static_cast<double>(steps);
+    const double rms = 5.0 / 2;  // one of four particles
+    EXPECT_NEAR(rollout(engine, 0).truncation_error,
+                static_cast<double>(steps - 2) * h * h / 12 * 6 * rms * h, 1e-14);
+  }
 }
 
 TEST(ScriptedRollout, DivergesInTheFirstStepWithABadValue) {

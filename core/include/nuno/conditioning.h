@@ -26,10 +26,15 @@ double bounded_sensitivity(const Backend& backend, const Rollout& flight);
 /// The words for a sensitivity above 10; empty for a calm flight.
 std::string fragility(double sensitivity);
 
-/// Measures a flight's step against the same flight on `finer`, the same engine at half of it. Its
-/// step_error is how far the end shapes are apart: mean distance with the mass centres aligned,
-/// over L. Both numbers are +∞ where it diverges there.
-void measure_step(const Backend& finer, Rollout& flight);
+/// Whether a flight may deserve a word of coarseness, so that its step is worth measuring: its
+/// truncation error, grown as a perturbation of the start does, is more than a quarter of what such
+/// a word is for, or it strains by no more than turning edges do in such steps.
+bool has_doubtful_step(const Cloth& cloth, const Rollout& flight, double sensitivity);
+
+/// Measures a flight's step against `finer`, the same flight at half of it. Its step_error is how
+/// far the end shapes are apart: mean distance with the mass centres aligned, over L. Both numbers
+/// are +∞ where that one diverged.
+void measure_step(const Cloth& cloth, const Rollout& finer, Rollout& flight);
 
 /// The words for a flight in such steps [s] whose end shape, or whose strain on the way, is the
 /// step's own, and the step to take instead; empty for one that is resolved, or not measured.

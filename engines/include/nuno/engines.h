@@ -7,6 +7,7 @@
 #include <nuno/scene_file.h>
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -105,15 +106,16 @@ std::unique_ptr<Backend> make_backend_for_gain(std::string_view name, const Scen
 /// hours.
 std::unique_ptr<Backend> at_finer_step(const Backend& backend, const SceneFile& file, double share);
 
-/// A rollout, and the engine that flew it.
+/// A rollout, the engine that flew it, and how far it can be trusted.
 struct JudgedRollout {
   std::unique_ptr<Backend> finer;  ///< null: the one that was asked
-  Rollout flight;
+  Rollout flight;                  ///< with its step error where its step is doubtful
+  double sensitivity = std::numeric_limits<double>::infinity();  ///< bounded; ∞ where it diverged
 };
 
-/// A rollout of the scene on its backend, with its step error, unless that would take hours. Where
-/// it diverges, and the scene leaves the step to the engine, it is flown at a quarter and at a
-/// sixteenth of the step.
+/// A rollout of the scene on its backend. A doubtful step is measured, unless that would take
+/// hours, see conditioning.h. Where it diverges, and the scene leaves the step to the engine, it is
+/// flown at a quarter and at a sixteenth of the step.
 JudgedRollout judged_rollout(const Backend& backend, const SceneFile& file, const Gains& gains,
                              const RolloutOptions& options = {});
 
