@@ -2,6 +2,7 @@
 
 #include <nuno/launch.h>
 
+#include "hinge_moments.h"
 #include "rod_world.h"
 
 #include <cmath>
@@ -30,6 +31,10 @@ namespace nuno::box2d {
 // below RATTLE's limit of 4 at every stiffness and with room for λ̄, which lags. It is of second
 // order and damps nothing; the mean of three, (θ₋ + 2θ + θ₊)/4, comes up to that limit and bursts.
 //
+// Hinges whose springs and dashpots are too rigid for iterations have their moments solved for, all
+// at once (see hinge_moments.h), and Box2D has the joints alone. Such moments are as good as rigid:
+// they are treated like λ.
+//
 // λ̄ ← λ̄ + w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the
 // joints forbid; each step multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
 //
@@ -46,7 +51,7 @@ Scheme make_scheme(const RodChain& chain, const Options& options) {
   // Each iteration takes away what is the faster gone the softer the springs: with 2/3 of h²ω² + hc
   // more, gaps and strains are those of converged impulses to a tenth, from 15 to 600 of it; with
   // a third, a stiff cloth (150) bursts.
-  const double more = 2.0 / 3 * chain.hinge_rigidity;
+  const double more = chain.solves_moments ? 0 : 2.0 / 3 * chain.hinge_rigidity;
   scheme.velocity_iterations = options.velocity_iterations + static_cast<int>(more);
   scheme.position_iterations = options.position_iterations;
   return scheme;
@@ -84,7 +89,7 @@ class ChainSimulation final : public Simulation {
         center_(std::move(center)),
         pose_(3, rods()),
         velocity_(3, rods()),
-        mean_impulse_(2, rods() - 1),
+        mean_impulse_(3, rods() - 1),
         left_(2, rods()),
         right_(2, rods()),
         positions_(positions),
@@ -102,6 +107,7 @@ class ChainSimulation final : public Simulation {
       velocity_.col(i) << u.col(i) - rod(i).left * spread, cross(along, spread);
     }
     locate_ends();
+    if (chain_.solves_moments) solver_.emplace(chain_, scheme_.half_kick);
     if (within_limits(velocity_)) {
       world_.emplace(chain_, scheme_.half_kick);
     } else {
@@ -133,32 +139,47 @@ class ChainSimulation final : public Simulation {
   bool push(const Points& forces) {
     const double scale = scheme_.half_kick / chain_.unit_force;
     if (!((scale * forces).cwiseAbs().maxCoeff() < largest_force)) return false;
-    if (!forces.allFinite()) return false;  // the maximum may have passed over a NaN
+    if (!forces.allFinite()) return false;    // the maximum may have passed over a NaN
+    Motions free = scheme_.keep * velocity_;  // of hinges and joints
     for (Index i = 0; i < rods(); ++i) {
       const Vector2d left = scale * rod(i).left_share * forces.col(i);
       const Vector2d right = scale * rod(i).right_share * forces.col(i + 1);
       const double torque = cross(left_.col(i), left) + cross(right_.col(i), right);
       world_->push(i, left + right, torque);
+      free.col(i).head<2>() += (left + right) / rod(i).mass;
+      free(2, i) += torque / rod(i).inertia;
     }
+    const Vector turning = scheme_.keep * turns(velocity_);
+    moments_ =
+        solver_ ? solver_->solve(turns(pose_), turning, free, left_, right_) : look_back(turning);
+    if (!(moments_.array().abs() < largest_force).all()) return false;  // or one is NaN
     for (Index i = 0; i + 1 < rods(); ++i) {
-      const double torque = look_back(i);
-      world_->push(i, {0, 0}, -torque);
-      world_->push(i + 1, {0, 0}, torque);
+      world_->push(i, {0, 0}, -moments_[i]);
+      world_->push(i + 1, {0, 0}, moments_[i]);
     }
     return true;
   }
 
-  /// k·s·u of a hinge, the moment that takes its spring back from where the step ends.
-  double look_back(Index i) const {
-    const HingeSpring& hinge = chain_.hinges[index(i)];
-    double squared_arm = 1;  // Σ (dC/dθ)², see rod_chain.cpp
-    if (chain_.hinge == Hinge::spring_pair) {
-      const double phi = (pose_(2, i + 1) - pose_(2, i)) / 2;
-      const double along = hinge.along * std::sin(phi), aside = hinge.aside * std::cos(phi);
-      squared_arm = 2 * (along * along + aside * aside);
+  /// From one rod's angle to the next one's.
+  static Vector turns(const Motions& motions) {
+    const Index hinges = motions.cols() - 1;
+    return (motions.row(2).tail(hinges) - motions.row(2).head(hinges)).transpose();
+  }
+
+  /// k·s·u of the hinges, the moments that take their springs back from where the step ends.
+  Vector look_back(const Vector& turning) const {
+    Vector moments(turning.size());
+    for (Index i = 0; i < moments.size(); ++i) {
+      const HingeSpring& hinge = chain_.hinges[index(i)];
+      double squared_arm = 1;  // Σ (dC/dθ)², see rod_chain.cpp
+      if (chain_.hinge == Hinge::spring_pair) {
+        const double phi = (pose_(2, i + 1) - pose_(2, i)) / 2;
+        const double along = hinge.along * std::sin(phi), aside = hinge.aside * std::cos(phi);
+        squared_arm = 2 * (along * along + aside * aside);
+      }
+      moments[i] = scheme_.half_kick * hinge.stiffness * squared_arm * turning[i];
     }
-    const double turning = scheme_.keep * (velocity_(2, i + 1) - velocity_(2, i));
-    return scheme_.half_kick * hinge.stiffness * squared_arm * turning;
+    return moments;
   }
 
   bool take_over(const RodWorld::Step& solved) {
@@ -167,17 +188,19 @@ class ChainSimulation final : public Simulation {
     velocity_ = first_ ? solved.velocities
                        : Motions(2 * solved.velocities - scheme_.keep * velocity_);  // to become u'
     for (Index i = 0; i + 1 < rods(); ++i) {
-      const Vector2d impulse = solved.impulses.col(i);
+      const Eigen::Vector3d impulse(solved.impulses(0, i), solved.impulses(1, i),
+                                    solver_ ? moments_[i] : 0);
       if (first_) {
         mean_impulse_.col(i) = impulse;
         continue;
       }
-      const Vector2d change = (1 - impulse_weight) * (mean_impulse_.col(i) - impulse);
+      const Eigen::Vector3d change = (1 - impulse_weight) * (mean_impulse_.col(i) - impulse);
       mean_impulse_.col(i) = impulse + change;
-      velocity_.col(i).head<2>() -= change / rod(i).mass;
-      velocity_(2, i) -= cross(right_.col(i), change) / rod(i).inertia;
-      velocity_.col(i + 1).head<2>() += change / rod(i + 1).mass;
-      velocity_(2, i + 1) += cross(left_.col(i + 1), change) / rod(i + 1).inertia;
+      const Vector2d force = change.head<2>();
+      velocity_.col(i).head<2>() -= force / rod(i).mass;
+      velocity_(2, i) -= (cross(right_.col(i), force) + change[2]) / rod(i).inertia;
+      velocity_.col(i + 1).head<2>() += force / rod(i + 1).mass;
+      velocity_(2, i + 1) += (cross(left_.col(i + 1), force) + change[2]) / rod(i + 1).inertia;
     }
     if (!first_) velocity_ *= scheme_.keep;
     first_ = false;
@@ -269,10 +292,12 @@ class ChainSimulation final : public Simulation {
   const Scheme& scheme_;
   std::optional<RodWorld> world_;  // none for a launch that Box2D could not take
   MassCenterFlight center_;
-  Motions pose_;            // x
-  Motions velocity_;        // u
-  Matrix2Xd mean_impulse_;  // λ̄ of every hinge
-  Matrix2Xd left_, right_;  // the rods' ends from their centres
+  Motions pose_;                        // x
+  Motions velocity_;                    // u
+  std::optional<HingeMoments> solver_;  // of hinges that are too rigid for Box2D
+  Vector moments_;                      // that hinges get besides Box2D's springs
+  Motions mean_impulse_;                // λ̄ of every hinge, and the same of solved moments
+  Matrix2Xd left_, right_;              // the rods' ends from their centres
   Points positions_, velocities_;
   std::string_view failure_;  // empty: Box2D flies this cloth
   bool first_ = true;

@@ -9,6 +9,9 @@ namespace nuno::box2d {
 // Inside, the unit of length is the mean rod, of mass a particle, of time a step: every number that
 // Box2D sees is near 1 whatever the scene's scale, and its step of 1 stays out of the formulae.
 
+/// A pose or velocity for every rod [3 × rods]: its centre of mass and its angle.
+using Motions = Eigen::Matrix3Xd;
+
 /// A segment as a rigid body, along its own x axis from its centre of mass; see rod_chain.cpp.
 struct Rod {
   double length = 1;
@@ -30,6 +33,9 @@ struct HingeSpring {
 
 constexpr double pair_range = 1.7;  // rad; the inner spring is 0.009 rods long there
 
+/// Beyond this rigidity iterations take longer than to solve for all soft welds at once.
+constexpr double most_iterated = 600;
+
 /// The fastest that the hinges of a chain move it.
 struct HingeRates {
   double squared_frequency = 0;  ///< ω² [1/s²]
@@ -47,8 +53,9 @@ struct RodChain {
   Hinge hinge = Hinge::soft_weld;
   std::vector<Rod> rods;
   std::vector<HingeSpring> hinges;
-  double hinge_rigidity = 0;  ///< h²ω² + hc, see hinge_rates
-  double drag_rate = 0;       ///< κ
+  double hinge_rigidity = 0;    ///< h²ω² + hc, see hinge_rates
+  bool solves_moments = false;  ///< see hinge_moments.h: Box2D has the joints alone
+  double drag_rate = 0;         ///< κ
 };
 
 RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps);

@@ -11,9 +11,6 @@ class b2World;
 
 namespace nuno::box2d {
 
-/// A pose or velocity for every rod [3 × rods]: its centre of mass and its angle.
-using Motions = Eigen::Matrix3Xd;
-
 /// The rods as Box2D's bodies and joints, for steps that are half a kick.
 class RodWorld {
  public:

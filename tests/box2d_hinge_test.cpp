@@ -5,6 +5,7 @@
 #include <nuno/rollout.h>
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
 #include "bare_problem.h"
 
@@ -89,6 +90,33 @@ TEST(Box2dHinge, ADashpotBrakesTheTurning) {
     const double pair = law * (1 + std::sin(phi) * std::sin(phi) / 3);
     EXPECT_NEAR(measured_moment(shape, turning, cloth, Hinge::spring_pair), pair, 3e-3 * law)
         << angle;
+  }
+}
+
+// Dashpots that nothing bends make a rod of the thread at once, which keeps its shape and the
+// angular momentum that the thread was launched with.
+TEST(Box2dHinge, RigidDashpotsMakeOneRodOfTheThread) {
+  constexpr Index particles = 13;
+  Points shape(2, particles), velocities(2, particles);
+  for (Index i = 0; i < particles; ++i) {
+    const double s = static_cast<double>(i) / (particles - 1);
+    shape.col(i) << s, 0.3 * std::sin(5 * s);
+    velocities.col(i) << std::cos(7 * s), 3 * s - std::sin(9 * s);
+  }
+  for (const double damping : {10.0, 1e9}) {
+    const Problem problem = problem_of(shape, 0, {.air_drag = 0, .hinge_damping = damping});
+    const auto backend = box2d::make_backend(problem);
+    EXPECT_EQ(backend->steps(), 1000);
+    const auto thread = backend->start(shape, velocities);
+    for (Index n = 0; n < backend->steps(); ++n) thread->step(Points::Zero(2, particles));
+
+    const Points arms = shape_of(shape), motion = shape_of(velocities);
+    const double momentum =
+        (arms.row(0).cwiseProduct(motion.row(1)) - arms.row(1).cwiseProduct(motion.row(0))).sum();
+    const Eigen::Rotation2Dd turned(momentum / arms.squaredNorm() * problem.arrival_time);
+    const Points expected = turned.toRotationMatrix() * arms;
+    const Points apart = shape_of(thread->positions()) - expected;
+    EXPECT_LT(apart.colwise().norm().maxCoeff(), 1e-3) << damping;
   }
 }
 

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 
 #include "sheets.h"
@@ -33,12 +32,6 @@ ChainScene scene_of(const Throw& thrown, Index particles) {
   return scene;
 }
 
-/// Particle-steps of a flight at most; NUNO_LONG_FLIGHTS allows more.
-double most_work() {
-  const char* const wished = std::getenv("NUNO_LONG_FLIGHTS");
-  return wished ? std::atof(wished) : 2e4;
-}
-
 /// How far the centroid may be off [m]. On Box2D 1e-4 L: single precision. Native adds up its
 /// places, 4 km high in a flight of a minute, in double precision.
 double tolerance(std::string_view engine, const Throw& thrown, double gravity) {
@@ -50,31 +43,21 @@ double tolerance(std::string_view engine, const Throw& thrown, double gravity) {
 class DefaultStep : public testing::TestWithParam<std::string_view> {};
 
 TEST_P(DefaultStep, BringsTheCentroidHomeWhateverTheSizeTheTimeAndTheDamping) {
-  int flown = 0;
   for (const double length : {0.01, 0.1, 1.0, 1e3}) {
     for (const double time : {0.05, 1.0, 10.0, 60.0}) {
       for (const double damping : {0.0, 1e-3, 1e-2}) {
         const Throw thrown{length, time, damping};
         const SceneFile file = make_scene_file("ribbon", scene_of(thrown, 8));
-        std::unique_ptr<Backend> backend;
-        try {
-          backend = make_backend(GetParam(), file);
-        } catch (const InputError&) {  // it says that such a flight would take hours
-          continue;
-        }
-        const double work =
-            static_cast<double>(backend->steps() * file.problem.chain().particles());
-        if (work > most_work() * (GetParam() == "native" ? 100 : 1)) continue;
+        const auto backend = make_backend(GetParam(), file);
         for (const double scales : {0.0, 1.0, 100.0}) {
+          if (backend->steps() > 20'000 && scales != 1) continue;  // seconds
           const Rollout flight = rollout(*backend, scales * gain_scale(file.problem));
           EXPECT_LE(flight.error.centroid, tolerance(GetParam(), thrown, file.scene.gravity))
               << length << " m, " << time << " s, " << damping << " N·m²·s, gain × " << scales;
-          ++flown;
         }
       }
     }
   }
-  EXPECT_GE(flown, GetParam() == "native" ? 3 * 48 : 3 * 30);
 }
 
 TEST_P(DefaultStep, TakesAFlightFarFromTheOriginForTheSameFlight) {
@@ -100,18 +83,51 @@ TEST_P(DefaultStep, TakesAFlightFarFromTheOriginForTheSameFlight) {
   }
 }
 
-TEST(Box2dSteps, TooManyForItsDashpotsAreRefusedWithTheirValue) {
-  ChainScene scene = scene_of({.length = 1, .arrival_time = 1, .hinge_damping = 1234}, 32);
-  const SceneFile file = make_scene_file("ribbon", scene);
-  try {
-    make_backend("box2d", file);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_TRUE(std::string(error.what()).starts_with("ribbon: /cloth/hinge_damping: 1234 takes "))
-        << error.what();
+TEST(StrongDashpots, AreNoReasonForShorterSteps) {
+  for (const double length : {0.01, 0.1, 1.0}) {
+    for (const double damping : {1e-2, 1e4}) {
+      const auto steps_on = [&](std::string_view engine, double hinge_damping) {
+        const Throw thrown{.length = length, .arrival_time = 1, .hinge_damping = hinge_damping};
+        return make_backend(engine, make_scene_file("ribbon", scene_of(thrown, 8)))->steps();
+      };
+      EXPECT_EQ(steps_on("box2d", damping), steps_on("box2d", 0)) << length << " m";
+      EXPECT_LE(steps_on("native", damping), 20'000) << length << " m";
+    }
   }
-  // On native they are implicit, and no reason for shorter steps.
-  EXPECT_LE(make_backend("native", file)->steps(), 20'000);
+}
+
+TEST(StrongDashpots, BurstOnNoEngineWhateverTheGain) {
+  for (const double length : {0.01, 0.03, 0.3}) {
+    for (const Index particles : {8, 25, 54}) {
+      for (const double damping : {1e-4, 1e-2, 1.0}) {
+        const Throw thrown{.length = length, .arrival_time = 1, .hinge_damping = damping};
+        const SceneFile file = make_scene_file("ribbon", scene_of(thrown, particles));
+        const auto box2d = make_backend("box2d", file);
+        if (box2d->steps() > 4000) continue;  // for its springs
+        for (const double scales : {10.0, 300.0}) {
+          const Rollout flight = rollout(*box2d, scales * gain_scale(file.problem));
+          EXPECT_FALSE(diverged(flight)) << length << " m, " << particles << " particles, "
+                                         << damping << " N·m²·s, gain × " << scales;
+        }
+      }
+    }
+  }
+}
+
+TEST(StrongDashpots, LeadBothEnginesToOneShape) {
+  for (const double length : {0.01, 0.1}) {
+    for (const double damping : {1e-4, 1e-3, 1e-2}) {
+      const Throw thrown{.length = length, .arrival_time = 1, .hinge_damping = damping};
+      const SceneFile file = make_scene_file("ribbon", scene_of(thrown, 16));
+      const auto native = make_backend("native", file), box2d = make_backend("box2d", file);
+      for (const double scales : {0.0, 10.0}) {
+        const double gain = scales * gain_scale(file.problem);
+        const Points here = rollout(*native, gain).final, there = rollout(*box2d, gain).final;
+        EXPECT_LE(shape_difference(native->cloth(), here, there).max, 1e-3 * length)
+            << length << " m, " << damping << " N·m²·s, gain × " << scales;
+      }
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(EachOf, DefaultStep, testing::ValuesIn(chain_engines),

@@ -91,7 +91,8 @@ TEST_F(Result, OfRefinementWithinALimitIsNoWorseThanOfTheGainAlone) {
 }
 
 TEST_F(Result, HasEveryFieldAndNoNull) {
-  const Json result = simulated({"simulate", scene("s-curve-32-inextensible"), "--alpha", "0.0181"});
+  const Json result =
+      simulated({"simulate", scene("s-curve-32-inextensible"), "--alpha", "0.0181"});
   const std::set<std::string> expected = {
       "nuno_result",    "scene",       "backend",         "status",           "alpha",
       "time_step",      "steps",       "cloth_length",    "target_scale",     "error",
