@@ -32,11 +32,13 @@ namespace nuno::box2d {
 // order and damps nothing; the mean of three, (θ₋ + 2θ + θ₊)/4, comes up to that limit and bursts.
 //
 // Hinges whose springs and dashpots are too rigid for iterations have their moments solved for, all
-// at once (see hinge_moments.h), and Box2D has the joints alone. Such moments are as good as rigid:
-// they are treated like λ.
+// at once (see hinge_moments.h), and Box2D has the joints alone.
 //
 // λ̄ ← λ̄ + w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the
 // joints forbid; each step multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
+// A rigid dashpot forbids a turning as a joint does, and its moment is treated like λ. A spring
+// does not stand the lag, so of 1 − w a hinge has the dashpot's share c/(k + c): stable at every k
+// and c.
 //
 // Box2D's position solver closes what stays open of the joints, and its corrections are taken over.
 //
@@ -194,7 +196,8 @@ class ChainSimulation final : public Simulation {
         mean_impulse_.col(i) = impulse;
         continue;
       }
-      const Eigen::Vector3d change = (1 - impulse_weight) * (mean_impulse_.col(i) - impulse);
+      Eigen::Vector3d change = (1 - impulse_weight) * (mean_impulse_.col(i) - impulse);
+      if (solver_) change[2] *= chain_.hinges[index(i)].dashpot_share();
       mean_impulse_.col(i) = impulse + change;
       const Vector2d force = change.head<2>();
       velocity_.col(i).head<2>() -= force / rod(i).mass;

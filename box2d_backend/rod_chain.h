@@ -29,6 +29,8 @@ struct HingeSpring {
   double damping = 0;
   double along = 0;  ///< a, of the pair
   double aside = 0;  ///< d
+
+  double dashpot_share() const { return damping / (stiffness + damping); }
 };
 
 constexpr double pair_range = 1.7;  // rad; the inner spring is 0.009 rods long there

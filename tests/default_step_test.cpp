@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "sheets.h"
@@ -109,6 +110,31 @@ TEST(StrongDashpots, BurstOnNoEngineWhateverTheGain) {
           EXPECT_FALSE(diverged(flight)) << length << " m, " << particles << " particles, "
                                          << damping << " N·m²·s, gain × " << scales;
         }
+      }
+    }
+  }
+}
+
+// A chain's highest bending wave has ω² = 16·k/(m·ℓ²), and its dashpots the rate c alike.
+TEST(StrongDashpots, BurstBesideNoSpring) {
+  ChainScene scene = scene_of({.length = 1, .arrival_time = 1, .hinge_damping = 0}, 32);
+  scene.launch = Launch::inextensible;
+  const Problem limp = make_problem(scene);
+  const Chain& chain = limp.chain();
+  const double per_hinge = 16 / (chain.hinge_length.minCoeff() *
+                                 std::pow(chain.rest_length.minCoeff(), 2) * chain.particle_mass);
+  const double step = scene.arrival_time / 1000;
+  for (const double spring : {10.0, 100.0, 599.0}) {      // h²ω²
+    for (const double dashpot : {2.0, 30.0, 1e3, 1e6}) {  // hc
+      scene.cloth.hinge_stiffness = spring / (step * step * per_hinge);
+      scene.cloth.hinge_damping = dashpot / (step * per_hinge);
+      const SceneFile file = make_scene_file("s", scene);
+      const auto box2d = make_backend("box2d", file);
+      EXPECT_EQ(box2d->steps(), 1000);
+      for (const double scales : {0.0, 300.0}) {
+        const Rollout flight = rollout(*box2d, scales * gain_scale(file.problem));
+        EXPECT_LT(flight.max_strain, 1e-3)
+            << "h²ω² = " << spring << ", hc = " << dashpot << ", gain × " << scales;
       }
     }
   }
