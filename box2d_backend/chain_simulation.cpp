@@ -2,7 +2,7 @@
 
 #include <nuno/launch.h>
 
-#include "hinge_moments.h"
+#include "joint_impulses.h"
 #include "rod_world.h"
 
 #include <cmath>
@@ -31,8 +31,9 @@ namespace nuno::box2d {
 // below RATTLE's limit of 4 at every stiffness and with room for λ̄, which lags. It is of second
 // order and damps nothing; the mean of three, (θ₋ + 2θ + θ₊)/4, comes up to that limit and bursts.
 //
-// Hinges whose springs and dashpots are too rigid for iterations have their moments solved for, all
-// at once (see hinge_moments.h), and Box2D has the joints alone.
+// Where springs and dashpots are too rigid for iterations, the impulses of joints and hinges are
+// solved for, all at once (see joint_impulses.h). Box2D is given them as forces and has the joints
+// alone, which add what is missing.
 //
 // λ̄ ← λ̄ + w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the
 // joints forbid; each step multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
@@ -53,7 +54,7 @@ Scheme make_scheme(const RodChain& chain, const Options& options) {
   // Each iteration takes away what is the faster gone the softer the springs: with 2/3 of h²ω² + hc
   // more, gaps and strains are those of converged impulses to a tenth, from 15 to 600 of it; with
   // a third, a stiff cloth (150) bursts.
-  const double more = chain.solves_moments ? 0 : 2.0 / 3 * chain.hinge_rigidity;
+  const double more = chain.solves_joints ? 0 : 2.0 / 3 * chain.hinge_rigidity;
   scheme.velocity_iterations = options.velocity_iterations + static_cast<int>(more);
   scheme.position_iterations = options.position_iterations;
   return scheme;
@@ -63,6 +64,7 @@ namespace {
 
 using Eigen::Matrix2Xd;
 using Eigen::Vector2d;
+using Eigen::Vector3d;
 
 constexpr double impulse_weight = 0.75;  // w
 
@@ -109,7 +111,7 @@ class ChainSimulation final : public Simulation {
       velocity_.col(i) << u.col(i) - rod(i).left * spread, cross(along, spread);
     }
     locate_ends();
-    if (chain_.solves_moments) solver_.emplace(chain_, scheme_.half_kick);
+    if (chain_.solves_joints) solver_.emplace(chain_, scheme_.half_kick);
     if (within_limits(velocity_)) {
       world_.emplace(chain_, scheme_.half_kick);
     } else {
@@ -138,28 +140,52 @@ class ChainSimulation final : public Simulation {
   Index rods() const { return static_cast<Index>(chain_.rods.size()); }
   const Rod& rod(Index i) const { return chain_.rods[index(i)]; }
 
+  /// Hands the rods what acts on them besides Box2D's joints and springs; false if that is too
+  /// much.
   bool push(const Points& forces) {
+    Motions pushes = pushes_of(forces);
+    if (solver_) join(pushes);
+    if (!(pushes.array().abs() < largest_force).all()) return false;  // or one is NaN
+    for (Index i = 0; i < rods(); ++i) world_->push(i, pushes.col(i).head<2>(), pushes(2, i));
+    if (solver_) return true;
+    const Vector moments = look_back();
+    for (Index i = 0; i + 1 < rods(); ++i) {
+      world_->push(i, {0, 0}, -moments[i]);
+      world_->push(i + 1, {0, 0}, moments[i]);
+    }
+    return true;
+  }
+
+  /// Force and torque on every rod over half a kick.
+  Motions pushes_of(const Points& forces) const {
     const double scale = scheme_.half_kick / chain_.unit_force;
-    if (!((scale * forces).cwiseAbs().maxCoeff() < largest_force)) return false;
-    if (!forces.allFinite()) return false;    // the maximum may have passed over a NaN
-    Motions free = scheme_.keep * velocity_;  // of hinges and joints
+    Motions pushes(3, rods());
     for (Index i = 0; i < rods(); ++i) {
       const Vector2d left = scale * rod(i).left_share * forces.col(i);
       const Vector2d right = scale * rod(i).right_share * forces.col(i + 1);
-      const double torque = cross(left_.col(i), left) + cross(right_.col(i), right);
-      world_->push(i, left + right, torque);
-      free.col(i).head<2>() += (left + right) / rod(i).mass;
-      free(2, i) += torque / rod(i).inertia;
+      pushes.col(i) << left + right, cross(left_.col(i), left) + cross(right_.col(i), right);
     }
-    const Vector turning = scheme_.keep * turns(velocity_);
-    moments_ =
-        solver_ ? solver_->solve(turns(pose_), turning, free, left_, right_) : look_back(turning);
-    if (!(moments_.array().abs() < largest_force).all()) return false;  // or one is NaN
+    return pushes;
+  }
+
+  /// Solves for the joints and adds what they give.
+  void join(Motions& pushes) {
+    Motions free = scheme_.keep * velocity_;
+    for (Index i = 0; i < rods(); ++i) {
+      free.col(i).head<2>() += pushes.col(i).head<2>() / rod(i).mass;
+      free(2, i) += pushes(2, i) / rod(i).inertia;
+    }
+    solved_ = solver_->solve(turns(pose_), turning(), free, left_, right_);
     for (Index i = 0; i + 1 < rods(); ++i) {
-      world_->push(i, {0, 0}, -moments_[i]);
-      world_->push(i + 1, {0, 0}, moments_[i]);
+      pushes.col(i) -= at(right_.col(i), solved_.col(i));
+      pushes.col(i + 1) += at(left_.col(i + 1), solved_.col(i));
     }
-    return true;
+  }
+
+  /// What an impulse at r from a rod's centre does to the rod.
+  static Vector3d at(const Vector2d& r, const Vector3d& impulse) {
+    const Vector2d force = impulse.head<2>();
+    return {force.x(), force.y(), cross(r, force) + impulse[2]};
   }
 
   /// From one rod's angle to the next one's.
@@ -168,9 +194,12 @@ class ChainSimulation final : public Simulation {
     return (motions.row(2).tail(hinges) - motions.row(2).head(hinges)).transpose();
   }
 
+  /// s·u of the hinges.
+  Vector turning() const { return scheme_.keep * turns(velocity_); }
+
   /// k·s·u of the hinges, the moments that take their springs back from where the step ends.
-  Vector look_back(const Vector& turning) const {
-    Vector moments(turning.size());
+  Vector look_back() const {
+    Vector moments = turning();
     for (Index i = 0; i < moments.size(); ++i) {
       const HingeSpring& hinge = chain_.hinges[index(i)];
       double squared_arm = 1;  // Σ (dC/dθ)², see rod_chain.cpp
@@ -179,7 +208,7 @@ class ChainSimulation final : public Simulation {
         const double along = hinge.along * std::sin(phi), aside = hinge.aside * std::cos(phi);
         squared_arm = 2 * (along * along + aside * aside);
       }
-      moments[i] = scheme_.half_kick * hinge.stiffness * squared_arm * turning[i];
+      moments[i] = scheme_.half_kick * hinge.stiffness * squared_arm * moments[i];
     }
     return moments;
   }
@@ -190,20 +219,20 @@ class ChainSimulation final : public Simulation {
     velocity_ = first_ ? solved.velocities
                        : Motions(2 * solved.velocities - scheme_.keep * velocity_);  // to become u'
     for (Index i = 0; i + 1 < rods(); ++i) {
-      const Eigen::Vector3d impulse(solved.impulses(0, i), solved.impulses(1, i),
-                                    solver_ ? moments_[i] : 0);
+      Vector3d impulse(solved.impulses(0, i), solved.impulses(1, i), 0);
+      if (solver_) impulse += solved_.col(i);
       if (first_) {
         mean_impulse_.col(i) = impulse;
         continue;
       }
-      Eigen::Vector3d change = (1 - impulse_weight) * (mean_impulse_.col(i) - impulse);
+      Vector3d change = (1 - impulse_weight) * (mean_impulse_.col(i) - impulse);
       if (solver_) change[2] *= chain_.hinges[index(i)].dashpot_share();
       mean_impulse_.col(i) = impulse + change;
-      const Vector2d force = change.head<2>();
-      velocity_.col(i).head<2>() -= force / rod(i).mass;
-      velocity_(2, i) -= (cross(right_.col(i), force) + change[2]) / rod(i).inertia;
-      velocity_.col(i + 1).head<2>() += force / rod(i + 1).mass;
-      velocity_(2, i + 1) += (cross(left_.col(i + 1), force) + change[2]) / rod(i + 1).inertia;
+      const Vector3d before = at(right_.col(i), change), after = at(left_.col(i + 1), change);
+      velocity_.col(i).head<2>() -= before.head<2>() / rod(i).mass;
+      velocity_(2, i) -= before[2] / rod(i).inertia;
+      velocity_.col(i + 1).head<2>() += after.head<2>() / rod(i + 1).mass;
+      velocity_(2, i + 1) += after[2] / rod(i + 1).inertia;
     }
     if (!first_) velocity_ *= scheme_.keep;
     first_ = false;
@@ -295,12 +324,12 @@ class ChainSimulation final : public Simulation {
   const Scheme& scheme_;
   std::optional<RodWorld> world_;  // none for a launch that Box2D could not take
   MassCenterFlight center_;
-  Motions pose_;                        // x
-  Motions velocity_;                    // u
-  std::optional<HingeMoments> solver_;  // of hinges that are too rigid for Box2D
-  Vector moments_;                      // that hinges get besides Box2D's springs
-  Motions mean_impulse_;                // λ̄ of every hinge, and the same of solved moments
-  Matrix2Xd left_, right_;              // the rods' ends from their centres
+  Motions pose_;                         // x
+  Motions velocity_;                     // u
+  std::optional<JointImpulses> solver_;  // of hinges that are too rigid for Box2D
+  Motions solved_;                       // its impulses in this step
+  Motions mean_impulse_;    // λ̄ of every joint, with its moment where it is solved for
+  Matrix2Xd left_, right_;  // the rods' ends from their centres
   Points positions_, velocities_;
   std::string_view failure_;  // empty: Box2D flies this cloth
   bool first_ = true;

@@ -70,7 +70,7 @@ RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps) {
     result.hinges.push_back(make_hinge_spring(chain.material, length, result));
   }
   result.hinge_rigidity = hinge_rates(chain).rigidity(result.h);
-  result.solves_moments = hinge == Hinge::soft_weld && result.hinge_rigidity > most_iterated;
+  result.solves_joints = hinge == Hinge::soft_weld && result.hinge_rigidity > most_iterated;
   result.drag_rate = chain.drag_rate * result.h;
   return result;
 }

@@ -35,7 +35,7 @@ struct HingeSpring {
 
 constexpr double pair_range = 1.7;  // rad; the inner spring is 0.009 rods long there
 
-/// Beyond this rigidity iterations take longer than to solve for all soft welds at once.
+/// Up to this rigidity iterations solve for soft welds, beyond it joint_impulses.h.
 constexpr double most_iterated = 600;
 
 /// The fastest that the hinges of a chain move it.
@@ -55,9 +55,9 @@ struct RodChain {
   Hinge hinge = Hinge::soft_weld;
   std::vector<Rod> rods;
   std::vector<HingeSpring> hinges;
-  double hinge_rigidity = 0;    ///< h²ω² + hc, see hinge_rates
-  bool solves_moments = false;  ///< see hinge_moments.h: Box2D has the joints alone
-  double drag_rate = 0;         ///< κ
+  double hinge_rigidity = 0;   ///< h²ω² + hc, see hinge_rates
+  bool solves_joints = false;  ///< see joint_impulses.h: Box2D has the joints alone
+  double drag_rate = 0;        ///< κ
 };
 
 RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps);

@@ -46,7 +46,7 @@ b2Joint* RodWorld::join(const RodChain& chain, double half_kick, std::size_t i) 
   constexpr double nothing = 1e-20;  // no moment to speak of, and its reciprocal is finite
   const HingeSpring& hinge = chain.hinges[i];
   const bool has_spring =
-      !chain.solves_moments && std::max(hinge.stiffness, hinge.damping) > nothing;
+      !chain.solves_joints && std::max(hinge.stiffness, hinge.damping) > nothing;
   // A joint of no stiffness would be rigid: a lone dashpot gets a spring for form's sake.
   const double k = half_kick * std::max(hinge.stiffness, nothing);
   const double c = half_kick * hinge.damping;

@@ -39,17 +39,17 @@ struct StepLimit {
   double value = 0;
 };
 
-/// Soft welds are implicit and stable at any step: Box2D's iterations, in proportion to h²ω² + hc,
-/// solve for them, or all at once beyond most_iterated. Dashpots ask for nothing. Springs swing: at
-/// h²ω² = 600 the waves of the whole cloth still take tens of steps.
+/// Soft welds are implicit and stable at any step: iterations solve for them or, where they are too
+/// rigid, joint_impulses.h. Their dashpots ask for nothing. Springs swing: at h²ω² = 600 the waves
+/// of the whole cloth still take tens of steps.
 ///
 /// A pair of springs also feels how far its joint is open, and the joint's impulse against that
 /// lags behind (λ̄): it bursts from 2 on.
 StepLimit hinge_limit(const Chain& chain, Hinge form) {
   const bool is_weld = form == Hinge::soft_weld;
-  const double limit = is_weld ? most_iterated : 0.5;
-  const double squared_frequency = hinge_rates(chain).squared_frequency;
-  const double rate = is_weld ? 0 : hinge_rates(chain).damping;
+  const double limit = is_weld ? 600 : 0.5;
+  auto [squared_frequency, rate] = hinge_rates(chain);
+  if (is_weld) rate = 0;
   if (squared_frequency == 0 && rate == 0) return {std::numeric_limits<double>::infinity(), "", 0};
   const double h = 2 * limit / (rate + std::sqrt(rate * rate + 4 * limit * squared_frequency));
   if (rate > h * squared_frequency)

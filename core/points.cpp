@@ -4,17 +4,8 @@
 
 namespace nuno {
 
-// Summed from the last column to the first, the order in which the native kernel updates the
+// Sums go from the last column to the first, the order in which the native kernel updates the
 // particles, so that both see the same centroid to the last bit.
-Vector centroid(const Points& points) {
-  assert(points.cols() > 0);
-  Vector sum = Vector::Zero(points.rows());
-  for (Index i = points.cols(); i-- > 0;) sum += points.col(i);
-  return sum / static_cast<double>(points.cols());
-}
-
-Points shape_of(const Points& points) { return points.colwise() - centroid(points); }
-
 namespace {
 
 template <int dimension>
@@ -27,6 +18,15 @@ Vector mass_center_in(const Points& points, const Vector& relative_mass) {
 }
 
 }  // namespace
+
+Vector centroid(const Points& points) {
+  assert(points.cols() > 0);
+  Vector sum = Vector::Zero(points.rows());
+  for (Index i = points.cols(); i-- > 0;) sum += points.col(i);
+  return sum / static_cast<double>(points.cols());
+}
+
+Points shape_of(const Points& points) { return points.colwise() - centroid(points); }
 
 Vector mass_center(const Points& points, const Vector& relative_mass) {
   assert(points.cols() > 0 && points.cols() == relative_mass.size());

@@ -205,7 +205,7 @@ JudgedRollout judged_rollout(const Backend& backend, const SceneFile& file, cons
   if (diverged(result.flight)) return result;
   const Backend& flew = result.finer ? *result.finer : backend;
   result.sensitivity = bounded_sensitivity(flew, result.flight);
-  if (!has_doubtful_step(flew.cloth(), result.flight, result.sensitivity)) return result;
+  if (!has_doubtful_step(result.flight, result.sensitivity)) return result;
   if (const auto half = at_finer_step(flew, file, 0.5)) {
     measure_step(flew.cloth(), rollout(*half, gains), result.flight);
   }

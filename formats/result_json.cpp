@@ -28,7 +28,7 @@ Json result_head(const std::string& scene, const Backend& backend, const Rollout
                  {"relative", rollout.error.mean / size}}},
                {"control_effort", rollout.control_effort},
                {"max_strain", rollout.max_strain},
-               {"truncation_error", rollout.truncation_error / size}};
+               {"truncation_error", rollout.truncation_error}};
   // Infinity becomes null.
   if (rollout.step_error) head["step_error"] = *rollout.step_error;
   if (rollout.finer_strain) head["finer_strain"] = *rollout.finer_strain;

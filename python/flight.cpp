@@ -205,11 +205,12 @@ void add_numbers(Class& result) {
                       "How much a small change at the start has grown by arrival [1].");
   result.def_property_readonly(
       "truncation_error", [](const Flight& self) { return self.rollout.truncation_error; },
-      "Sum of the time steps' local truncation errors, root mean square over the particles [m].");
+      "Sum of the time steps' local truncation errors, root mean square over the particles, over L "
+      "[1].");
   result.def_property_readonly(
       "step_error", [](const Flight& self) { return self.rollout.step_error; },
       "How far half of the time step moves the end shape, over L [1]; None where that is not in "
-      "doubt.");
+      "doubt, or would take too long.");
   result.def_property_readonly(
       "finer_strain", [](const Flight& self) { return self.rollout.finer_strain; },
       "`max_strain` with half of the time step [1], measured beside `step_error`.");

@@ -195,14 +195,12 @@ TEST(Conditioning, KnowsARolloutWithoutAnAnswer) {
 }
 
 TEST(Conditioning, DoubtsAStepThatMayDeserveAWord) {
-  const Problem problem = problem_of(cross());
-  const double size = problem.cloth().size;
   const auto is_doubted = [&](double truncation, double growth, double strain, double turn) {
     Rollout flight;
-    flight.truncation_error = truncation * size;
+    flight.truncation_error = truncation;
     flight.max_strain = strain;
     flight.max_turn = turn;
-    return has_doubtful_step(problem.cloth(), flight, growth);
+    return has_doubtful_step(flight, growth);
   };
   EXPECT_FALSE(is_doubted(2.4e-4, 0.1, 0, 0));
   EXPECT_TRUE(is_doubted(2.6e-4, 0.1, 0, 0));
@@ -213,6 +211,7 @@ TEST(Conditioning, DoubtsAStepThatMayDeserveAWord) {
   EXPECT_FALSE(is_doubted(0, 1, 0.01, 0.049)) << "strained, but not by turning";
   EXPECT_TRUE(is_doubted(0, 1, 0.01, 0.051));
   EXPECT_FALSE(is_doubted(0, 1, 0.005, 1)) << "too little to care";
+  EXPECT_TRUE(is_doubted(0, 1, 0.11, 0)) << "whatever did it";
 }
 
 TEST(Conditioning, MeasuresWhatHalfTheStepChanges) {

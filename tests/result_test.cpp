@@ -287,6 +287,7 @@ TEST_F(Result, TellsHowFarItMovesWithHalfOfTheStepAndWhichResolvesIt) {
     return {Json::parse(run.out), run.err};
   };
   const auto [coarse, words] = flown();
+  ASSERT_TRUE(coarse.contains("step_error"));
   EXPECT_GT(coarse["step_error"], 1e-3);
   const std::string asked = "a --time-step of ";
   const std::size_t at = words.find(asked);
@@ -301,6 +302,7 @@ TEST_F(Result, JudgesTheStepOfARefinedFlightByItsOwnReference) {
   // Against the reference without its correction it would be some per cent.
   const Json refined = simulated({"optimize", scene("s-curve-32"), "--refine"});
   ASSERT_TRUE(refined["optimization"].contains("refinement"));
+  ASSERT_TRUE(refined.contains("step_error"));
   EXPECT_LT(refined["step_error"], 2e-3);
 }
 

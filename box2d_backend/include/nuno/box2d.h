@@ -18,7 +18,7 @@ enum class Hinge {
 
 struct Options {
   Hinge hinge = Hinge::soft_weld;
-  int velocity_iterations = 8;  ///< > 0; stiff soft welds get more
+  int velocity_iterations = 8;  ///< > 0; stiff soft welds get more, rigid ones not
   int position_iterations = 4;  ///< > 0
 };
 
@@ -28,7 +28,7 @@ struct Options {
 ///
 /// The cloth flies about its mass centre, whose own flight is that of mass_center_flight.h: nothing
 /// here depends on how far or how high it is thrown. The time step, the problem's or 1/1000 of the
-/// arrival time, is cut to what very stiff hinge springs swing in, to 1/4 of the time that
+/// arrival time, is cut to what resolves very stiff hinge springs, to 1/4 of the time that
 /// drag takes, to one segment's length of launch about the mass centre, and to a whole number of
 /// steps.
 ///

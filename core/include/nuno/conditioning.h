@@ -27,9 +27,10 @@ double bounded_sensitivity(const Backend& backend, const Rollout& flight);
 std::string fragility(double sensitivity);
 
 /// Whether a flight may deserve a word of coarseness, so that its step is worth measuring: its
-/// truncation error, grown as a perturbation of the start does, is more than a quarter of what such
-/// a word is for, or it strains by no more than turning edges do in such steps.
-bool has_doubtful_step(const Cloth& cloth, const Rollout& flight, double sensitivity);
+/// truncation error, grown as a perturbation of the start does (once to ten times), is more than a
+/// quarter of what such a word is for; or it strains, by no more than turning edges do in such
+/// steps or by a tenth.
+bool has_doubtful_step(const Rollout& flight, double sensitivity);
 
 /// Measures a flight's step against `finer`, the same flight at half of it. Its step_error is how
 /// far the end shapes are apart: mean distance with the mass centres aligned, over L. Both numbers

@@ -30,9 +30,11 @@ struct Rollout {
   ArrivalError error;         ///< infinite where the rollout diverged
   double control_effort = 0;  ///< rms over particles and time of control force / particle weight
   double max_strain = 0;      ///< largest |l/ℓ − 1| of an edge on the way
-  double max_turn = 0;        ///< largest turn of an edge in one step [rad]
-  /// Sum over the steps of the local truncation error of a second-order step, h²/12 times the
-  /// change of the acceleration: root mean square over the particles [m].
+  /// Largest motion of an edge's ends against each other in one step, over ℓ: its turn [rad] where
+  /// that is small and nothing stretches.
+  double max_turn = 0;
+  /// Sum of the steps' local truncation errors (Verlet's), h²/12 times the change of the
+  /// acceleration, root mean square over the particles, over L [1].
   double truncation_error = 0;
   std::optional<double> step_error;     ///< where it was measured, see conditioning.h [1]
   std::optional<double> finer_strain;   ///< max_strain with half of the step, measured beside it

@@ -1,7 +1,6 @@
-#include "hinge_moments.h"
+#include "joint_impulses.h"
 
 #include <Eigen/LU>
-#include <algorithm>
 
 namespace nuno::box2d {
 namespace {
@@ -10,7 +9,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// From a rod's motion to that of a point at r from its centre.
+/// G(r), from a rod's motion to that of its point at r from the centre.
 Matrix3d motion_at(const Vector2d& r) {
   Matrix3d result;
   result << 1, 0, -r.y(), 0, 1, r.x(), 0, 0, 1;
@@ -19,27 +18,28 @@ Matrix3d motion_at(const Vector2d& r) {
 
 }  // namespace
 
-HingeMoments::HingeMoments(const RodChain& chain, double half_kick)
+JointImpulses::JointImpulses(const RodChain& chain, double part)
     : chain_(chain),
       spring_(static_cast<Index>(chain.hinges.size())),
       dashpot_(spring_.size()),
       joints_(chain.hinges.size()),
-      moments_(spring_.size()) {
+      impulses_(3, spring_.size()) {
   for (Index i = 0; i < spring_.size(); ++i) {
     const HingeSpring& hinge = chain.hinges[static_cast<std::size_t>(i)];
-    spring_[i] = half_kick * hinge.stiffness;
-    dashpot_[i] = half_kick * hinge.damping;
+    spring_[i] = part * hinge.stiffness;
+    dashpot_[i] = part * hinge.damping;
   }
 }
 
-// With V the rods' motions free of hinges and joints, W their inverse masses and G(r) as above, the
-// impulses p (force and moment) at all joints leave the rods with V + W·Gᵀ·p. There
+// The impulses p at its two ends leave a rod with V + W·(G(left)ᵀ·p − G(right)ᵀ·p), W its inverse
+// mass and inertia. At every joint then
 //     the ends of neighbours move alike, and
-//     moment = −k·(θ + ω) − c·ω + k·(turning),    ω their difference of angular velocities:
-// a block-tridiagonal system, symmetric and positive definite, of 3 × 3 blocks.
-const Vector& HingeMoments::solve(const Vector& angles, const Vector& turning, const Motions& free,
-                                  const Eigen::Matrix2Xd& left, const Eigen::Matrix2Xd& right) {
-  const auto hinges = static_cast<std::size_t>(moments_.size());
+//     moment = −k·(θ + ω) − c·ω + k·turning,    ω their difference of angular velocities:
+// a system of 3 × 3 blocks, block-tridiagonal, symmetric and positive definite.
+const Motions& JointImpulses::solve(const Vector& angles, const Vector& turning,
+                                    const Motions& free, const Eigen::Matrix2Xd& left,
+                                    const Eigen::Matrix2Xd& right) {
+  const std::size_t hinges = joints_.size();
   const auto response = [this](std::size_t rod, const Matrix3d& to,
                                const Matrix3d& from) -> Matrix3d {
     const Rod& body = chain_.rods[rod];
@@ -57,21 +57,21 @@ const Vector& HingeMoments::solve(const Vector& angles, const Vector& turning, c
     needed[2] += spring_[at] * (turning[at] - angles[at]) / rigidity;
     if (i > 0) {
       const Joint& before = joints_[i - 1];
-      const Matrix3d eliminated = before.coupling.transpose() * before.factor;
+      const Matrix3d eliminated = before.coupling.transpose() * before.inverse;
       own -= eliminated * before.coupling;
       needed -= eliminated * before.impulse;
     }
-    joint.factor = own.inverse();
+    joint.inverse = own.inverse();
     joint.impulse = needed;
     if (i + 1 < hinges) joint.coupling = -response(i + 1, start, motion_at(right.col(at + 1)));
   }
   for (std::size_t i = hinges; i-- > 0;) {
     Joint& joint = joints_[i];
     if (i + 1 < hinges) joint.impulse -= joint.coupling * joints_[i + 1].impulse;
-    joint.impulse = (joint.factor * joint.impulse).eval();
-    moments_[static_cast<Index>(i)] = joint.impulse[2];
+    joint.impulse = joint.inverse * joint.impulse;
+    impulses_.col(static_cast<Index>(i)) = joint.impulse;
   }
-  return moments_;
+  return impulses_;
 }
 
 }  // namespace nuno::box2d
