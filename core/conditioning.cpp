@@ -57,8 +57,8 @@ std::string coarseness(const Rollout& flight, double time_step) {
     const double halvings = std::max(
         1.0, std::ceil(std::log2(std::min(error, in_proportion) / largest_step_error) / 2));
     return fmt::format(
-        "coarse: half of the step moves the end shape by {:.2g} % of L; a --time-step "
-        "of {:.2g} s {}",
+        "coarse: half of the step moves the end shape by {:.2g} % of L; a time step of {:.2g} s "
+        "{}",
         100 * error, time_step / std::exp2(halvings),
         error > in_proportion ? "or less is worth a try" : "resolves it");
   }
@@ -67,11 +67,16 @@ std::string coarseness(const Rollout& flight, double time_step) {
   const double own = 4.0 / 3 * (flight.max_strain - *flight.finer_strain);
   if (flight.max_strain > largest_calm_strain && own > 0.5 * flight.max_strain) {
     return fmt::format(
-        "coarse on the way: half of the step strains it by {:.2g} % only; a "
-        "--time-step of {:.2g} s resolves more",
+        "coarse on the way: half of the step strains it by {:.2g} % only; a time step of {:.2g} s "
+        "resolves more",
         100 * *flight.finer_strain, time_step / 2);
   }
   return {};
+}
+
+std::string caution(const Rollout& flight, double sensitivity, double time_step) {
+  const std::string fragile = fragility(sensitivity);
+  return fragile.empty() ? coarseness(flight, time_step) : fragile;
 }
 
 std::string divergence_message(const std::string& scene_path, const Backend& backend,

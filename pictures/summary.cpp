@@ -70,12 +70,8 @@ void print_summary(std::FILE* file, const std::string& scene, const Backend& bac
         flight_crossings(backend.problem(), rollout.frame_times, rollout.frame_positions);
     fmt::print(file, "  {:<17} {}\n", "passes through", crossing_words(crossings, cloth.size));
   }
-  const std::string warning = fragility(sensitivity);
+  const std::string warning = caution(rollout, sensitivity, backend.time_step());
   if (!warning.empty()) fmt::print(file, "  {}\n", warning);
-  // A fragile flight is another one at any step.
-  if (!warning.empty()) return;
-  const std::string coarse = coarseness(rollout, backend.time_step());
-  if (!coarse.empty()) fmt::print(file, "  {}\n", coarse);
 }
 
 }  // namespace nuno

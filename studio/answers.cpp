@@ -8,6 +8,7 @@
 #include <nuno/scene_file.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -90,12 +91,23 @@ void add_sheet(Json& head, const Problem& problem, const Rollout& flight) {
   head["crossings"]["faces"] = crossings.crossed_faces;
 }
 
+/// What stands in the way of a better throw, and whether this one can be trusted.
+std::string remarks(const Throw& done) {
+  std::string words = verdict(assess(*done.backend));
+  if (!done.sensitivity) return words;
+  std::string warning = caution(done.flight, *done.sensitivity, done.backend->time_step());
+  if (warning.empty()) return words;
+  warning[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(warning[0])));
+  return words + (words.empty() ? "" : "\n") + warning + '.';
+}
+
 /// The answer that the page draws: the numbers to their last bit, the frames to 7 digits.
 std::string drawable(const Throw& done, const Request& request, Clock::time_point start) {
   const Backend& backend = *done.backend;
   const Rollout& flight = done.flight;
   const Problem& problem = backend.problem();
   Json head = result_head(done.file.scene.name, backend, flight);
+  if (done.sensitivity) head["sensitivity"] = *done.sensitivity;
   head["effort_unit"] = effort_unit(problem);
   if (done.found) {
     OptimizeSummary shown = *done.found;
@@ -105,7 +117,7 @@ std::string drawable(const Throw& done, const Request& request, Clock::time_poin
   }
   if (done.refined) head["refinement"] = to_json(*done.refined);
   if (problem.is_sheet()) add_sheet(head, problem, flight);
-  head["remarks"] = verdict(assess(backend));
+  head["remarks"] = remarks(done);
   std::string text = dump(head);
   text.pop_back();  // the brace: the shapes follow
   text += ",\"initial\":";

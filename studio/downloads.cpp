@@ -89,7 +89,7 @@ Answer result_answer(const Request& request) {
   if (done.refined) optimization->refinement = done.refined;
   return {.body = written_text([&](std::FILE* file) {
             write_result(file, done.file.input, *done.backend, done.flight,
-                         bounded_sensitivity(*done.backend, done.flight), optimization);
+                         done.sensitivity.value(), optimization);
           }),
           .file_name = "result.json"};
 }

@@ -73,6 +73,8 @@ Options read_options(const Parameters& parameters, const std::set<std::string_vi
       options.warm_start = number(name, text);
     } else if (name == "refine") {
       options.refine = word(name, text, std::array{"0", "1"}) == "1";
+    } else if (name == "judge") {
+      options.judge = word(name, text, std::array{"0", "1"}) == "1";
     } else if (name == "format") {
       options.format = '.' + word(name, text, std::array{"glb", "pc2", "mdd", "usda"});
     } else if (name == "frames") {

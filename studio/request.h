@@ -26,6 +26,7 @@ struct Options {
   std::string format{".glb"};  ///< of an animation
   Index frames = 0;
   double after = 0;
+  bool judge = false;
 };
 
 /// Throws InputError for a parameter that is not among `known`, stands twice or has a bad value.

@@ -45,6 +45,17 @@ RolloutOptions kept_frames(const Options& options, const SceneFile& file, KeptFr
           .keeps_forces = true};
 }
 
+void fly(Throw& result, double gain, const RolloutOptions& options, bool is_judged) {
+  if (!is_judged) {
+    result.flight = rollout(*result.backend, gain, options);
+    return;
+  }
+  JudgedRollout flown = judged_rollout(*result.backend, result.file, gain, options);
+  if (flown.finer) result.backend = std::move(flown.finer);
+  result.flight = std::move(flown.flight);
+  result.sensitivity = flown.sensitivity;
+}
+
 }  // namespace
 
 Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrames frames) {
@@ -78,11 +89,12 @@ Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrame
       result.backend = made_ready();
     }
   }
+  const bool is_judged = options.judge || frames == KeptFrames::of_scene;
   RolloutOptions kept = kept_frames(options, file, frames);
-  result.flight = rollout(*result.backend, gain, kept);
+  fly(result, gain, kept, is_judged);
   if (kept.tail > 0 && diverged(result.flight)) {  // after it arrived, maybe: then it did arrive
     kept.tail = 0;
-    result.flight = rollout(*result.backend, gain, kept);
+    fly(result, gain, kept, is_judged);
   }
   return result;
 }

@@ -21,6 +21,7 @@ struct Throw {
   std::vector<Evaluation> between;       ///< more of E(α) where the search took long strides
   std::optional<RefineSummary> refined;  ///< where it was better than the gain alone
   Rollout flight;
+  std::optional<double> sensitivity;  ///< of a flight that was judged
 };
 
 /// The frames that a flight keeps: the scene's; or those that the request asks for, to be looked
@@ -28,7 +29,8 @@ struct Throw {
 enum class KeptFrames { of_scene, of_request };
 
 /// The throw at the gain `alpha`, or at the best one where there is none: as `nuno simulate` and
-/// `nuno optimize` do it, with their functions and options. Throws InputError and Stopped.
+/// `nuno optimize` do it, with their functions and options. It is judged as theirs where the frames
+/// are the scene's or the request asks for it. Throws InputError and Stopped.
 Throw throw_cloth(const Request& request, std::optional<double> alpha, KeptFrames frames);
 
 }  // namespace nuno::studio

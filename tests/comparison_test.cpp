@@ -194,6 +194,16 @@ TEST(Conditioning, KnowsARolloutWithoutAnAnswer) {
   EXPECT_TRUE(diverged(flight));
 }
 
+TEST(Conditioning, CautionsAgainstWhatIsFragileOrElseCoarse) {
+  Rollout flight;
+  flight.step_error = flight.finer_strain = 0;
+  EXPECT_EQ(caution(flight, 1, 0.01), "");
+  EXPECT_EQ(caution(flight, 20, 0.01), fragility(20));
+  flight.step_error = 0.01;
+  EXPECT_EQ(caution(flight, 1, 0.01), coarseness(flight, 0.01));
+  EXPECT_EQ(caution(flight, 20, 0.01), fragility(20));
+}
+
 TEST(Conditioning, DoubtsAStepThatMayDeserveAWord) {
   const auto is_doubted = [&](double truncation, double growth, double strain, double turn) {
     Rollout flight;
@@ -241,8 +251,7 @@ TEST(Conditioning, SaysWhichStepResolvesACoarseFlight) {
   };
   EXPECT_EQ(words(1e-3), "");
   EXPECT_EQ(words(nan), "");
-  EXPECT_NE(words(0.004).find("0.4 % of L; a --time-step of 0.005 s resolves it"),
-            std::string::npos);
+  EXPECT_NE(words(0.004).find("0.4 % of L; a time step of 0.005 s resolves it"), std::string::npos);
   EXPECT_NE(words(0.016).find("of 0.0025 s resolves it"), std::string::npos);
   EXPECT_NE(words(infinity).find("or less is worth a try"), std::string::npos);
   EXPECT_EQ(coarseness({}, 0.01), "") << "not measured";
@@ -260,7 +269,7 @@ TEST(Conditioning, SaysThatAStrainOnTheWayIsTheSteps) {
   // Of t + 4e, with t + e beside it, 4e is the step's own.
   EXPECT_EQ(words(0.011 + 0.010, 0.011 + 0.0025), "") << "most is the cloth's own";
   EXPECT_NE(words(0.009 + 0.010, 0.009 + 0.0025), "") << "most is the step's";
-  EXPECT_NE(words(0.021, 0.01).find("by 1 % only; a --time-step of 0.005 s"), std::string::npos);
+  EXPECT_NE(words(0.021, 0.01).find("by 1 % only; a time step of 0.005 s"), std::string::npos);
 }
 
 TEST(Conditioning, TellsWhereAndWhyARolloutDiverged) {

@@ -289,7 +289,7 @@ TEST_F(Result, TellsHowFarItMovesWithHalfOfTheStepAndWhichResolvesIt) {
   const auto [coarse, words] = flown();
   ASSERT_TRUE(coarse.contains("step_error"));
   EXPECT_GT(coarse["step_error"], 1e-3);
-  const std::string asked = "a --time-step of ";
+  const std::string asked = "a time step of ";
   const std::size_t at = words.find(asked);
   ASSERT_NE(at, std::string::npos) << words;
   scene["time_step"] = std::stod(words.substr(at + asked.size()));

@@ -57,6 +57,33 @@ TEST_F(Studio, AnswersAsTheCommandLineToTheLastBit) {
   }
 }
 
+TEST_F(Studio, JudgesAFlightAsTheCommandLineDoes) {
+  Json coarse = read_json(scene("hanging-to-arch-32"));
+  coarse["cloth"]["stretch_stiffness"] = 2e5;
+  coarse["cloth"]["hinge_stiffness"] = 1e-5;
+  const std::string path = in_folder("coarse.json");
+  write_text(path, coarse.dump());
+  const Json expected = simulated({"simulate", path});
+  ASSERT_TRUE(expected.contains("step_error"));
+  for (const char* request :
+       {"/api/simulate?judge=1", "/api/simulate?frames=9&after=1&judge=1", "/api/result?alpha=0"}) {
+    const Json answer = json_of(post(request, coarse.dump()));
+    ASSERT_TRUE(answer.contains("step_error")) << request;
+    for (const char* field : {"sensitivity", "step_error", "finer_strain", "steps"}) {
+      EXPECT_EQ(answer[field], expected[field]) << request << ' ' << field;
+    }
+  }
+  const auto remarks = [&](const std::string& request, const std::string& of) {
+    return json_of(post(request, of))["remarks"].get<std::string>();
+  };
+  EXPECT_NE(remarks("/api/simulate?judge=1", coarse.dump()).find("Coarse: half of the step moves"),
+            std::string::npos);
+  EXPECT_EQ(remarks("/api/simulate", coarse.dump()).find("Coarse"), std::string::npos);
+  EXPECT_NE(
+      remarks("/api/optimize?judge=1", read_text(scene("letter-z"))).find("Fragile: a change"),
+      std::string::npos);
+}
+
 TEST_F(Studio, AWarmStartFollowsTheBestGain) {
   const std::string scene = read_text(nuno::scene("letter-z"));
   const Json best = json_of(post("/api/optimize", scene));

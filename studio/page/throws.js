@@ -55,7 +55,7 @@ export class Throws {
     // What is asked for at rest gives way to the hand.
     const urgent = !live || this.at_rest;
     this.at_rest = !live;
-    const sampled = () => live ? { frames: frames_while_moving } : { frames: frames_at_rest(), after: time_after() };
+    const sampled = () => live ? { frames: frames_while_moving } : { frames: frames_at_rest(), after: time_after(), judge: 1 };
     const corrected = () => (!live && app.refines && !no_refining() ? { refine: 1 } : {});
     const run = (channel, path, parameters, done) => this.channels[channel].run({
       work: (page, signal) => this.ask(path, parameters, page, signal),

@@ -41,6 +41,10 @@ void measure_step(const Cloth& cloth, const Rollout& finer, Rollout& flight);
 /// step's own, and the step to take instead; empty for one that is resolved, or not measured.
 std::string coarseness(const Rollout& flight, double time_step);
 
+/// The word of warning for a judged flight in such steps: fragile, or else coarse; empty where it
+/// can be trusted. A fragile flight is another one at any step.
+std::string caution(const Rollout& flight, double sensitivity, double time_step);
+
 /// At which step a rollout diverged and why.
 std::string divergence_message(const std::string& scene_path, const Backend& backend,
                                const Rollout& rollout);
