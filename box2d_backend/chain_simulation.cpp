@@ -31,15 +31,14 @@ namespace nuno::box2d {
 // below RATTLE's limit of 4 at every stiffness and with room for λ̄, which lags. It is of second
 // order and damps nothing; the mean of three, (θ₋ + 2θ + θ₊)/4, comes up to that limit and bursts.
 //
-// Where springs and dashpots are too rigid for iterations, the impulses of joints and hinges are
+// Where dashpots are too rigid for iterations, the impulses of joints and hinges are
 // solved for, all at once (see joint_impulses.h). Box2D is given them as forces and has the joints
 // alone, which add what is missing.
 //
 // λ̄ ← λ̄ + w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the
 // joints forbid; each step multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.
 // A rigid dashpot forbids a turning as a joint does, and its moment is treated like λ. A spring
-// does not stand the lag, so of 1 − w a hinge has the dashpot's share c/(k + c): stable at every k
-// and c.
+// does not stand the lag from h²ω² = 6hc on; where joints are solved for, hc is the larger.
 //
 // Box2D's position solver closes what stays open of the joints, and its corrections are taken over.
 //
@@ -225,8 +224,7 @@ class ChainSimulation final : public Simulation {
         mean_impulse_.col(i) = impulse;
         continue;
       }
-      Vector3d change = (1 - impulse_weight) * (mean_impulse_.col(i) - impulse);
-      if (solver_) change[2] *= chain_.hinges[index(i)].dashpot_share();
+      const Vector3d change = (1 - impulse_weight) * (mean_impulse_.col(i) - impulse);
       mean_impulse_.col(i) = impulse + change;
       const Vector3d before = at(right_.col(i), change), after = at(left_.col(i + 1), change);
       velocity_.col(i).head<2>() -= before.head<2>() / rod(i).mass;

@@ -69,8 +69,12 @@ RodChain make_rod_chain(const Problem& problem, Hinge hinge, Index steps) {
   for (const double length : chain.hinge_length) {
     result.hinges.push_back(make_hinge_spring(chain.material, length, result));
   }
-  result.hinge_rigidity = hinge_rates(chain).rigidity(result.h);
-  result.solves_joints = hinge == Hinge::soft_weld && result.hinge_rigidity > most_iterated;
+  const HingeRates rates = hinge_rates(chain);
+  result.hinge_rigidity = rates.rigidity(result.h);
+  const double dashpots = result.h * rates.damping;
+  const double springs = result.h * result.h * rates.squared_frequency;
+  result.solves_joints =
+      hinge == Hinge::soft_weld && dashpots > most_iterated && dashpots > springs;
   result.drag_rate = chain.drag_rate * result.h;
   return result;
 }

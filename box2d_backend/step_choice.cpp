@@ -39,8 +39,8 @@ struct StepLimit {
   double value = 0;
 };
 
-/// Soft welds are implicit and stable at any step: iterations solve for them or, where they are too
-/// rigid, joint_impulses.h. Their dashpots ask for nothing. Springs swing: at h²ω² = 600 the waves
+/// Soft welds are implicit and stable at any step: iterations solve for them or, where dashpots are
+/// too rigid, joint_impulses.h. So dashpots ask for nothing. Springs swing: at h²ω² = 600 the waves
 /// of the whole cloth still take tens of steps.
 ///
 /// A pair of springs also feels how far its joint is open, and the joint's impulse against that
