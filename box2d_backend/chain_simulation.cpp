@@ -31,9 +31,9 @@ namespace nuno::box2d {
 // below RATTLE's limit of 4 at every stiffness and with room for λ̄, which lags. It is of second
 // order and damps nothing; the mean of three, (θ₋ + 2θ + θ₊)/4, comes up to that limit and bursts.
 //
-// Where dashpots are too rigid for iterations, the impulses of joints and hinges are
-// solved for, all at once (see joint_impulses.h). Box2D is given them as forces and has the joints
-// alone, which add what is missing.
+// Where dashpots are too rigid for iterations, the impulses of joints and hinges are solved for,
+// all at once (see joint_impulses.h). Box2D is given them as forces and has the joints alone, which
+// add what is missing.
 //
 // λ̄ ← λ̄ + w·(λ − λ̄): RATTLE has λ̄ = λ, w = 1, but then nothing takes away a velocity that the
 // joints forbid; each step multiplies it by 1 − 2w. J·(λ̄ − λ) itself is cut away by the next P.

@@ -22,9 +22,10 @@ double bounded_sensitivity(const Backend& backend, const Rollout& flight) {
 
 std::string fragility(double sensitivity) {
   if (!(sensitivity > largest_calm_sensitivity)) return {};
+  const std::string growth =
+      sensitivity < 1e6 ? fmt::format("{:.0f}", sensitivity) : fmt::format("{:.1g}", sensitivity);
   return fmt::format(
-      "fragile: a change at the start grows {:.3g}-fold; engines and steps need not agree",
-      sensitivity);
+      "fragile: a change at the start grows {}-fold; engines and steps need not agree", growth);
 }
 
 bool has_doubtful_step(const Rollout& flight, double sensitivity) {

@@ -175,6 +175,8 @@ TEST(Conditioning, BoundsAGrowthThatLeavesNothingInCommon) {
 TEST(Conditioning, CallsAGrowthAboveTenFragile) {
   EXPECT_EQ(fragility(10), "");
   EXPECT_NE(fragility(10.1), "");
+  EXPECT_NE(fragility(1679.25).find("grows 1679-fold"), std::string::npos);
+  EXPECT_NE(fragility(1e8).find("grows 1e+08-fold"), std::string::npos);
   EXPECT_NE(fragility(infinity), "");
   EXPECT_EQ(fragility(nan), "");
 }
