@@ -61,6 +61,17 @@ TEST(ScriptedRollout, HasTheLargestStrainOfTheWholeWay) {
   EXPECT_DOUBLE_EQ(rollout(breathing({1, 1, 1, 1, 1.75}), 0).max_strain, 0.75);
 }
 
+TEST(ScriptedRollout, HasTheStrainOfOneEdgeLongerOrShorterThanTheRest) {
+  for (const double length : {0.5, 1.5}) {  // of the first edge alone
+    const ScriptedBackend engine(problem_of(cross()), 3, [=](const Moment&) {
+      Points x = cross();
+      x.col(0) = x.col(1) + length * (x.col(0) - x.col(1)).eval();
+      return x;
+    });
+    EXPECT_DOUBLE_EQ(rollout(engine, 0).max_strain, 0.5) << length;
+  }
+}
+
 TEST(ScriptedRollout, HasTheLargestTurnOfAnEdgeInAStep) {
   constexpr double turn = 0.3;
   const ScriptedBackend spinning(problem_of(cross()), 5, [](const Moment& now) -> Points {
